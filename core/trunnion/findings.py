@@ -109,7 +109,7 @@ def error(code: str, text: str, *where: str, remedy: str = "") -> Finding:
 
 
 def has_errors(findings: Iterable[Finding]) -> bool:
-    """Say whether any finding is an error."""
+    """Return whether any finding is an error."""
     return any(f.severity is Severity.ERROR for f in findings)
 
 

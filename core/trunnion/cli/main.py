@@ -39,7 +39,7 @@ class OneLineParser(argparse.ArgumentParser):
     """A parser whose complaint is one line on standard error."""
 
     def error(self, message: str) -> NoReturn:
-        """Say what is wrong with the call and leave with the exit code of a bad call."""
+        """Return what is wrong with the call and leave with the exit code of a bad call."""
         self.exit(BAD, f"{self.prog}: {message}; see '{self.prog} --help'\n")
 
 

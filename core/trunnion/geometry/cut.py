@@ -12,8 +12,8 @@ Position = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cut:
-    """Where a face, named by tag, is cut: by the plane through the one place of `places` that has a `normal`, or, without a normal, by
-    the path through two or more places that are brought onto the face. mm, the part's coordinates as read.
+    """Where a face, named by tag, is cut: by the plane through the one position of `places` that has a `normal`, or, without a normal, by
+    the path through two or more positions that are brought onto the face. mm, the part's coordinates as read.
 
     What lies behind the plane (left of the path, seen from outside) keeps the tag, what lies before it (right) takes the next free one.
     """
@@ -29,7 +29,7 @@ class Cut:
 
 
 def plane_cut(face: int, position: Position, normal: Position) -> Cut:
-    """Return the cut of a face by the plane through a place; raise `BadInput` when the normal has no length or a number is none."""
+    """Return the cut of a face by the plane through a position; raise `BadInput` when the normal has no length or a number is none."""
     if not all(map(math.isfinite, (*position, *normal))):
         raise BadInput(
             f"the plane of a cut needs numbers; got {' '.join(f'{v:g}' for v in (*position, *normal))}"
@@ -40,7 +40,7 @@ def plane_cut(face: int, position: Position, normal: Position) -> Cut:
 
 
 def curve_cut(face: int, places: tuple[Position, ...]) -> Cut:
-    """Return the cut of a face by the path through some places near it; raise `BadInput` for fewer than two."""
+    """Return the cut of a face by the path through some positions near it; raise `BadInput` for fewer than two."""
     if len(places) < 2:
         raise BadInput("a drawn cut needs two places at least")
     return Cut(face=face, places=places)

@@ -41,7 +41,7 @@ from trunnion.part.topology.measure import open_edges
 
 T = TypeVar("T")
 REACH = 1.0
-"""mm that a place of a drawn cut may be away from the face: a click on a coarse picture's triangles is."""
+"""mm that a position of a drawn cut may be away from the face: a click on a coarse picture's triangles is."""
 
 
 def divided(part: Part, cut: Cut) -> Part:

@@ -38,7 +38,7 @@ _SAMPLES = 64
 class DrawnCurve:
     """The curve on the surface of one face through given points (k, 3) in order; one that returns to its start is closed.
 
-    Raises `BadInput` for a place that is farther than `reach` from the surface.
+    Raises `BadInput` for a position that is farther than `reach` from the surface.
     """
 
     def __init__(self, face: Shape, positions: Floats, reach: float, where: str) -> None:
@@ -99,7 +99,7 @@ class DrawnCurve:
         return votes > 0
 
     def _brought(self, positions: Floats, reach: float, where: str) -> Floats:
-        """Return the surface's parameters (k, 2) nearest to the places, without jumps on surfaces that close on themselves."""
+        """Return the surface's parameters (k, 2) nearest to the positions, without jumps on surfaces that close on themselves."""
         nearest = ShapeAnalysis_Surface(self._surface)
         at = np.empty((len(positions), 2))
         for k, position in enumerate(positions.tolist()):

@@ -1,4 +1,4 @@
-"""The order of operations: what must come before is done before, tools change as seldom as that allows, ways between are short."""
+"""The order of operations: what must come before is done before, tools change as seldom as that allows, paths between are short."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrderedOperation:
-    """What is ordered: an operation with its tool's name, its stage in the plan (0 first), its place and what comes before."""
+    """What is ordered: an operation with its tool's name, its stage in the plan (0 first), its position and what comes before."""
 
     id: str
     tool: str

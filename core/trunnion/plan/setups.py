@@ -68,7 +68,7 @@ def make_setups(
 
 
 def from_below(feature: Feature) -> bool:
-    """Say whether a feature is reached along the recognition frame's +z, from under the part."""
+    """Return whether a feature is reached along the recognition frame's +z, from under the part."""
     direction = feature.attributes.get("direction")
     return isinstance(direction, tuple) and len(direction) == 3 and direction[2] < 0.0
 

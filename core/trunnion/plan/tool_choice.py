@@ -20,9 +20,10 @@ class ToolRequirement:
     """What a cutter is wanted for.
 
     `depth`: how far below the highest surroundings its tip goes; `envelope_area`: the plane area its envelope must keep in; `wanted`: what
-    it should cover there (the room itself when empty). `corner_radius`: largest corner radius that leaves no material at the foot;
+    it should cover there (the envelope's area itself when empty). `corner_radius`: largest corner radius that leaves no material at the
+    foot;
     `exact`: the corner radius has to be that one. `radius`: largest radius of the cutter (0: no bound). `missable`: share of the wanted
-    area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where the room is widest, so
+    area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where that area is widest, so
     that it can enter and turn. `keep`: for floors, the distance from the finished walls beside the fillet's own; then it is the cutter's
     flat that has to cover what is wanted (below 0: the whole disc). `near`: how much smaller than the largest candidate a cutter may be,
     as a share of its diameter, to be chosen because it serves other requirements too. `cusps`: only what stays in sharp inner edges may be
@@ -125,7 +126,7 @@ def depth_reached(tool: Tool) -> float:
 
 
 def _fitting(requirement: ToolRequirement, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
-    """Return the cutters that cover what is wanted without leaving the room, but for the share that may be missed.
+    """Return the cutters that cover what is wanted without leaving the envelope's area, but for the share that may be missed.
 
     Where one fits, so do all smaller ones: the largest is looked for.
     """
@@ -141,7 +142,7 @@ def _fitting(requirement: ToolRequirement, tools: Sequence[Tool], progress: Prog
 
 
 def fits_through(requirement: ToolRequirement, tool: Tool, tools: Sequence[Tool]) -> bool:
-    """Say whether a cutter covers what is wanted, but for what may be missed, as well as the others of the catalogue would."""
+    """Return whether a cutter covers what is wanted, but for what may be missed, as well as the others of the catalogue would."""
     return _missed_area(requirement, tool) <= _missable(requirement, tools)(tool)
 
 
@@ -175,7 +176,7 @@ def _fitting_floor(
 
 
 def _covered(requirement: ToolRequirement, tool: Tool) -> Region:
-    """Return what a cutter reaches: its disc in the room, or for a floor its flat, kept off the walls and their fillet."""
+    """Return what a cutter reaches: its disc in the envelope's area, or for a floor its flat, kept off the walls and their fillet."""
     if requirement.keep < 0.0:
         return requirement.envelope_area.opened(tool.radius)
     flat = tool.radius - tool.corner_radius

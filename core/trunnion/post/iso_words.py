@@ -86,7 +86,7 @@ def iso_words(name: str, package: str = "") -> IsoWords:
 
 
 def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
-    """Return the words of a control; raise `BadInput` where they miss an entry, or name a place or a role that is not known."""
+    """Return the words of a control; raise `BadInput` where they miss an entry, or name a position or a role that is not known."""
     if words.centres not in CENTRES:
         raise BadInput(
             f"dialect {name}: centres must be one of {', '.join(CENTRES)}; got {words.centres!r}"

@@ -167,7 +167,7 @@ def written(
 
 
 def _written_cycles(path: Toolpath, scale: TickScale, rows: Ints) -> Iterator[WrittenCycle]:
-    """Yield the cycles of a path by their places among the rows that are kept; without those that rounding left no motion."""
+    """Yield the cycles of a path by their positions among the rows that are kept; without those that rounding left no motion."""
     for block in path.cycles:
         first, last = np.searchsorted(rows, [block.first, block.last + 1]).tolist()
         end, cycle = float(path.position[block.last, 2]), block.cycle

@@ -1,4 +1,5 @@
-"""Faces that are repeated evenly about an axis, by what doesn't turn with the part: area, place and normals in cylindrical coordinates."""
+"""Faces that are repeated evenly about an axis, by what doesn't turn with the part: area, position and normals in cylindrical
+coordinates."""
 
 from __future__ import annotations
 
@@ -21,9 +22,9 @@ SAME_POSITION = 0.01
 SAME_NORMAL = 0.05
 """Difference of the copies' mean normals in the directions away from, around and along the axis (unit vectors)."""
 SAME_ANGLE = radians(1.5)
-"""How far a copy may be from its place around the axis, in radians."""
+"""How far a copy may be from its position around the axis, in radians."""
 PRESENT = 0.7
-"""Share of the places around the axis that must be taken: a few copies may be cut into several faces."""
+"""Share of the positions around the axis that must be taken: a few copies may be cut into several faces."""
 MOST = 120
 """Copies that are looked for at most."""
 

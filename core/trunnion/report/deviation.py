@@ -1,4 +1,4 @@
-"""The deviation map: how far every place of the finished part is from the part as drawn, as triangles with a value at each corner.
+"""The deviation map: how far every position of the finished part is from the part as drawn, as triangles with a value at each corner.
 
 The proof measures at samples. Faces on which they differ are divided until no edge is longer than the samples are apart; a corner has the
 value of its nearest sample, and a sample outside the tolerance passes its value to the corners around it, so that no gouge falls between.

@@ -45,7 +45,7 @@ SIZE = (1600, 1000)
 FILLED = 0.92
 """How far what is drawn may reach from the middle of a picture towards its border."""
 _NAMED_POINTS = 5
-"""Worst places whose figure is written on the deviation's picture."""
+"""Worst positions whose figure is written on the deviation's picture."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

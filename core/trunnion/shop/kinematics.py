@@ -51,7 +51,7 @@ class WorkPosition:
 
 
 WorkPositions = Mapping[str, WorkPosition]
-"""Places by the names of their setups."""
+"""Positions by the names of their setups."""
 NO_WORK_POSITIONS: WorkPositions = MappingProxyType({})
 """What is known of three axes: nothing more is needed."""
 

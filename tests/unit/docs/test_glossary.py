@@ -73,9 +73,12 @@ ALLOWED = {
     "straying": "rapid_straying straying",
     "way": "way",
 }
-"""Names that keep such a word, in small letters and without leading underscores. `clear`: of contact, or emptied; `hand`: a tool's, and made
-by one, a key of project files; `left`: a side, and keys of the verdict; `beside`, `places`, `straying`, `way`: parts of digests, keys of
-project files, of the catalogue and of settings; `shell`: of faces; `shown`: in a window, or as text."""
+"""Names that keep such a word, in small letters and without leading underscores.
+
+`clear`: of contact, or emptied; `hand`: a tool's, and made by one, a key of project files; `left`: a side, and keys of the verdict;
+`beside`, `places`, `straying`, `way`: parts of digests, keys of project files, of the catalogue and of settings; `shell`: of faces;
+`shown`: in a window, or as text.
+"""
 
 TWICE = {
     "ExactFace": "a protocol of planning, and the class of `part` that meets it",

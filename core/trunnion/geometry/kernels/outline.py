@@ -58,7 +58,7 @@ def points_in_polygon_loop(
     """Fill out (k,) with what `points_in_polygon` returns.
 
     Strip i, from `low + i pitch` in y, lists in rows, from start[i] on, the chords that come within
-    `near` of it; places beyond all strips are OUT.
+    `near` of it; positions beyond all strips are OUT.
     """
     for n in range(len(positions)):
         x, y = positions[n, 0], positions[n, 1]
@@ -74,7 +74,7 @@ def points_in_polygon_loop(
                 pieces[rows[c], 3],
             )
             # Parity of crossings towards +x; a chord is listed in every strip it passes, and this
-            # place reads one.
+            # position reads one.
             if (ay > y) != (by > y) and ax + (y - ay) / (by - ay) * (bx - ax) > x:
                 out[n] = IN - out[n]
             # Only chords whose box is within `near` can be too near.

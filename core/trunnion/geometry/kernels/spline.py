@@ -3,8 +3,8 @@ basis functions. Plain reference.
 
 Cox and de Boor's recursion (Piegl and Tiller, The NURBS Book, 1997, 2.2). A surface is two rows of
 knots, each as often as it counts, two degrees, and poles (m, n, 4) with weights: x w, y w, z w, w.
-What comes back for a place (u, v) is (6, 3): the point S, its derivatives S_u, S_v, S_uu, S_uv,
-S_vv. A place beyond the knots is on the continued first or last piece.
+What comes back for a position (u, v) is (6, 3): the point S, its derivatives S_u, S_v, S_uu, S_uv,
+S_vv. A position beyond the knots is on the continued first or last piece.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 """The loop of `kernels.spline` compiled: only the degree + 1 basis functions that are not 0 at a
-place, built up degree by degree (Cox, 1972; de Boor, 1972)."""
+position, built up degree by degree (Cox, 1972; de Boor, 1972)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where lines and arcs meet: all crossings of many segments at once, and the one meeting of two carriers near a place."""
+"""Where lines and arcs meet: all crossings of many segments at once, and the one meeting of two carriers near a position."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from trunnion.geometry.rays import Intervals
 
 S = TypeVar("S", covariant=True)
 FINER = 2
-"""Places looked at along a side of a cell when the highest material over it is sought, beside its edges'."""
+"""Positions looked at along a side of a cell when the highest material over it is sought, beside its edges'."""
 
 
 class Builder(Protocol[S]):
@@ -100,7 +100,8 @@ class BlankBase(ABC):
 
     @abstractmethod
     def sides(self, points: Floats, near: float, sag: float = 0.0) -> Bools:
-        """Say of points (n, 3) in its own frame in which of its s sides each lies within `near` mm (n, s); `sag` more on curved ones."""
+        """Return for points (n, 3) in its own frame in which of its s sides each lies within `near` mm (n, s); `sag` more on curved
+        ones."""
 
     @abstractmethod
     def shell(self) -> tuple[Floats, Ints]:

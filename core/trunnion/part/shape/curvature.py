@@ -1,4 +1,4 @@
-"""The curvatures of a trimmed face: at places spread over it and along its edges, and the extremes, searched closer around the best."""
+"""The curvatures of a trimmed face: at positions spread over it and along its edges, and the extremes, searched closer around the best."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from trunnion.part.shape.evaluate import evaluator_of
 from trunnion.part.topology.identity import Shape, edges_of
 
 _GRID, _ALONG = 7, 17
-"""Places along either parameter, and along each edge."""
+"""Positions along either parameter, and along each edge."""
 _ZOOM, _ZOOMS = 5, 4
-"""How often the surroundings of the best place are looked at again, and with how many places along either parameter."""
+"""How often the surroundings of the best position are looked at again, and with how many positions along either parameter."""
 _SAME_EVERYWHERE = (GeomAbs_Plane, GeomAbs_Cylinder, GeomAbs_Sphere)
 
 
 class _Bending:
-    """The principal curvatures of one face, as it lies in the solid, at places of its parameters."""
+    """The principal curvatures of one face, as it lies in the solid, at positions of its parameters."""
 
     def __init__(self, face: Shape) -> None:
         self.adaptor = BRepAdaptor_Surface(face)

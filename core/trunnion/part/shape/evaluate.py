@@ -1,4 +1,5 @@
-"""Surfaces of faces evaluated at many places at once: closed forms, B-splines as arrays, and the CAD kernel one by one for what is left."""
+"""Surfaces of faces evaluated at many positions at once: closed forms, B-splines as arrays, and the CAD kernel one by one for what is
+left."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A face as its CAD surface has it: exact points, normals and bends at places of its own two parameters, and what its trim holds."""
+"""A face as its CAD surface has it: exact points, normals and bends at positions of its own two parameters, and what its trim holds."""
 
 from __future__ import annotations
 

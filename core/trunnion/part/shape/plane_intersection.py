@@ -77,13 +77,13 @@ class Tracer:
         return _unit(_cross(_cross(du, dv), self.normal))
 
     def stepped(self, uv: UV, along: Triple) -> UV:
-        """Return the place on the plane after a step in space."""
+        """Return the position on the plane after a step in space."""
         _, du, dv = self.at(uv)
         a, b = _solved(du, dv, along)
         return self.onto_plane((uv[0] + a, uv[1] + b))
 
     def onto_plane(self, uv: UV) -> UV:
-        """Return the place pulled onto the plane along the surface's steepest direction."""
+        """Return the position pulled onto the plane along the surface's steepest direction."""
         for _ in range(_NEWTON):
             uv = self._bounded(*uv)
             point, du, dv = self.at(uv)
@@ -200,7 +200,7 @@ def trace(
 
 
 def _loops(tracer: Tracer) -> Iterator[Piece]:
-    """Yield the closed curves of a plane that meets a face but none of its edges, from places where samples change side."""
+    """Yield the closed curves of a plane that meets a face but none of its edges, from positions where samples change side."""
     seeds = np.array(tracer.view.grid(_SEEDS)).reshape(_SEEDS, _SEEDS, 2)
     heights = np.array(
         [[tracer.above(tracer.at((u, v))[0]) for u, v in row] for row in seeds.tolist()]

@@ -39,7 +39,7 @@ ROUNDS, LATE = 16, 6
 just within its limit, others would come nearer to that without end."""
 
 MANY = 4000
-"""Places evaluated between two looks at cancel: some hundredths of a second where the kernel does it one by one."""
+"""Positions evaluated between two looks at cancel: some hundredths of a second where the kernel does it one by one."""
 PIECES = 1 << (ROUNDS + 2)
 """Numbers for all pieces of a piece of the border: halves of piece n are 2 n and 2 n + 1."""
 

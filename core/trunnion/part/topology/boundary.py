@@ -24,7 +24,7 @@ _SAMPLES, _ROUNDS = 33, 24
 _NODES, _NEARER = 17, 4
 """Nodes on an edge, and steps towards the nearest point of its curve: they start beside it."""
 _SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Shares of a curve's parameters at which two curves in the same place are compared."""
+"""Shares of a curve's parameters at which two curves in the same position are compared."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -103,7 +103,7 @@ def _distance(curve: BRepAdaptor_Curve, node: Floats, t: float) -> float:
 
 
 def _bounding(face: Shape) -> list[BRepAdaptor_Curve]:
-    """Return the curves that bound a face, without its seams: one edge that is there twice, or (in IGES) two edges in the same place."""
+    """Return the curves that bound a face, without its seams: one edge that is there twice, or (in IGES) two edges in the same position."""
     curves = [
         BRepAdaptor_Curve(e)
         for e in edges_of(face)

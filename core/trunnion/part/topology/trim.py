@@ -1,5 +1,5 @@
-"""What a face's trim holds, for many places at once: its outline as short pieces in the face's own parameters decides nearly all of them,
-and the CAD kernel those beside it."""
+"""What a face's trim holds, for many positions at once: its outline as short pieces in the face's own parameters decides nearly all of
+them, and the CAD kernel those beside it."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from trunnion.progress import NO_PROGRESS, Progress
 SAG = 1e-4
 """Of the face's size in its parameters: how far a piece may be from the outline."""
 FEW = 40
-"""Fewer places are classified by the kernel alone: that is as quick as opening the outline."""
+"""Fewer positions are classified by the kernel alone: that is as quick as opening the outline."""
 HALVINGS = 8
 TRIED = 8
-"""Places along both sides of a grid at which the outline must say the same as the kernel."""
+"""Positions along both sides of a grid at which the outline must say the same as the kernel."""
 
 
 class Trim:
@@ -48,7 +48,7 @@ class Trim:
             return self._by_kernel(uv)
         share = (uv - self._low) / self._size
         position_class = self._outlines.within(share)
-        # The kernel brings places beyond a seam back; it is queried for those as well.
+        # The kernel brings positions beyond a seam back; it is queried for those as well.
         unsure = (position_class == NEAR) | (((share < 0.0) | (share > 1.0)) & self._turns).any(
             axis=1
         )

@@ -27,25 +27,25 @@ from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive
 from trunnion.progress import NO_PROGRESS, Progress
 
 SKIM = 2e-4
-"""mm: how far above a land what stands in the way is looked for. An end mill enters a fillet that begins on the land by no more than this,
+"""mm: how far above a land what is in the way is looked for. An end mill enters a fillet that begins on the land by no more than this,
 and goes on over its rim by sqrt(2 R SKIM), less than a stepover of any ball."""
 SIDE = 1.0
-"""mm: what stands higher than this over a land's rim is a side; a fillet that is still lower there is cut along by the rim as it comes."""
+"""mm: what is higher than this over a land's rim is a side; a fillet that is still lower there is cut along by the rim as it comes."""
 STEP = 2.0
 """mm: heights that shank and holder are kept off the part at go in such steps, always down: few sections serve many tools."""
 NECK = 1.0
-"""mm that an end mill keeps off unfinished sides that are higher than its flutes: in corners more stands there than roughing's allowance,
+"""mm that an end mill keeps off unfinished sides that are higher than its flutes: in corners more is there than roughing's allowance,
 and a neck does not cut."""
 UNDER = math.sin(math.radians(0.01))
 """Part along -z of the normal from which on a triangle hangs over: 1 um in 6 mm."""
 LAP, EVEN = 1e-3, 0.02
 """mm that shadows of neighbouring triangles overlap by, and that the rim of them all is evened by, always outwards."""
 TOUCHING = 0.02
-"""mm: a disc that is smaller by this stands free wherever the cutter only touches what is beside it."""
+"""mm: a disc that is smaller by this is free wherever the cutter only touches what is beside it."""
 HAIR = 0.02
 """mm: half the width up to which what is left along the rim of what is done is none."""
 RIM_SPACING = 0.5
-"""mm between the places along a rim that are asked whether a cutter stands free there."""
+"""mm between the positions along a rim at which it is tested whether a cutter is free."""
 LAND, REST_LAND = "land", "rest_land"
 """Kinds of operations on lands: with a large end mill, and with another one of what that left."""
 STOCK, LATERAL, AROUND_TOOL, ABOVE_TOOL = (
@@ -95,7 +95,7 @@ class PartAbove:
         return self._found[z]
 
     def _hanging(self, z: float) -> Region:
-        """Return the shadow of what faces downwards above a height: together with the section there it is all that stands above."""
+        """Return the shadow of what faces downwards above a height: together with the section there it is all that is above."""
         skin = self.space.skin
         corners = skin.points[skin.triangles]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -168,7 +168,7 @@ def covered(land: Land, free: Region, tool: Tool) -> Region:
 def is_free_of_part(
     part_above: PartAbove, land: Land, tool: Tool, progress: Progress = NO_PROGRESS
 ) -> bool:
-    """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
+    """Return whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what is beside a land: a section
     that misses something would let it in."""
     space = part_above.space
     axis_region = (

@@ -17,14 +17,14 @@ from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import NO_PROGRESS, Progress
 
 SAMPLES = 1500
-"""Places that an area is judged by; one of them stands for less than a thousandth of it."""
+"""Samples that an area is judged by; one of them stands for less than a thousandth of it."""
 FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
 """Steps of an even spread over a square, by the golden ratio and its square."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class AreaSamples:
-    """Places (k, 3) on faces with outward unit normals (k, 3) and tags (k,), each standing for the same area in mm2."""
+    """Samples (k, 3) on faces with outward unit normals (k, 3) and tags (k,), each standing for the same area in mm2."""
 
     point: Floats
     normal: Floats
@@ -35,14 +35,14 @@ class AreaSamples:
         return len(self.face)
 
     def of(self, rows: Bools) -> AreaSamples:
-        """Return some of the places."""
+        """Return some of the samples."""
         return AreaSamples(
             point=self.point[rows], normal=self.normal[rows], face=self.face[rows], area=self.area
         )
 
 
 def samples_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaSamples:
-    """Return places spread evenly over faces: a place stands for an equal share of their area, the same ones each time."""
+    """Return samples spread evenly over faces: a sample stands for an equal share of their area, the same ones each time."""
     rows = np.flatnonzero(skin.of(tags))
     corners = skin.points[skin.triangles[rows]]
     area = 0.5 * np.linalg.norm(
@@ -70,7 +70,7 @@ def samples_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaS
 
 
 def leans(samples: AreaSamples) -> Floats:
-    """Return how far the normals of places lean from the tool's axis (k,), rad."""
+    """Return how far the normals of samples lean from the tool's axis (k,), rad."""
     return np.asarray(np.arccos(np.clip(samples.normal[:, 2], -1.0, 1.0)))
 
 
@@ -82,7 +82,7 @@ def reached(
     allowance: float = 0.0,
     progress: Progress = NO_PROGRESS,
 ) -> Bools:
-    """Say which samples (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least
+    """Return which samples (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least
     `clearance` mm above the part, and without going lower than the blank.
 
     With an allowance it is the faces thickened by so much that it touches.
@@ -118,7 +118,7 @@ def is_clear_of_walls(
     clearance: float,
     allowance: float,
 ) -> bool:
-    """Say whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `clearance` mm over what stands
+    """Return whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `clearance` mm over what is
     beside: the part with an allowance all round."""
     shifted = samples.point[:, :2] + tool.radius * samples.normal[:, :2]
     lowest = float(space.low[2]) - 1.0

@@ -94,8 +94,8 @@ class SurfaceSpace:
         query_for: Callable[[Tool], ClearanceQuery] | None = None,
         progress: Progress = NO_PROGRESS,
     ) -> SurfaceDrive:
-        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for` makes
-        askers.
+        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for`
+        returns the clearance query of a tool.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
         """

@@ -21,13 +21,13 @@ LEANS = np.radians([25.0, 50.0, 70.0])
 AROUND = 8
 """Directions of a lean."""
 SAMPLES = 200
-"""Places of an area that are enough to choose a leaning cutter by: each is asked for many poses."""
+"""Samples of an area that are enough to choose a leaning cutter by: each is queried at many poses."""
 
 
 def reached_leaning(
     samples: AreaSamples, tool: Tool, query: ClearanceQuery, progress: Progress = NO_PROGRESS
 ) -> Bools:
-    """Say which samples (k,) a cutter touches with some lean, nothing of the tool in the part, and an axis that the machine can hold."""
+    """Return which samples (k,) a cutter touches with some lean, nothing of the tool in the part, and an axis that the machine can hold."""
     found = np.zeros(len(samples), dtype=bool)
     tried = list(_axes(samples.normal))
     for n, axis in enumerate(tried):
@@ -48,7 +48,7 @@ def leaning_cutter(
     wanted: Tool | None = None,
     progress: Progress = NO_PROGRESS,
 ) -> AreaCutters:
-    """Return the largest cutter that, leaning, reaches at least a share of what any one reaches of places, the shortest of its size; or
+    """Return the largest cutter that, leaning, reaches at least a share of what any one reaches of samples, the shortest of its size; or
     the one that is `wanted`. What it misses goes to the largest smaller one that reaches nearly all any does of that."""
     ranked = sorted(tools, key=lambda t: (-t.diameter, depth_reached(t), t.name))
     reach: dict[str, Bools] = {}
@@ -81,7 +81,7 @@ def leaning_cutter(
 
 
 def _axes(normal: Floats) -> list[Floats]:
-    """Return axes (k, 3) to be tried at places with normals (k, 3): the normal itself, then leans from it all round."""
+    """Return axes (k, 3) to be tried at samples with normals (k, 3): the normal itself, then leans from it all round."""
     first = np.where(np.abs(normal[:, 2:]) < 0.9, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
     x = first - (first * normal).sum(axis=1, keepdims=True) * normal
     x /= np.linalg.norm(x, axis=1, keepdims=True)

@@ -1,8 +1,8 @@
-"""What a task asks for instead when no cutter of the catalogue fits it as wanted: the next best that a programmer would take.
+"""What a task requests instead when no cutter of the catalogue fits it as wanted: the next best that a programmer would take.
 
 A deep pocket with tight corners often has no cutter that is slimmer than its corners and long enough. The ladder: a cutter exactly as
 round as the corner; then the slimmest that reaches, and the corner is left, named and measured by the proof; in roughing one that has less
-room to turn, then one that leaves more to rest roughing.
+space to turn, then one that leaves more to rest roughing.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def best_fit(state: PanelPlanState, task: OperationTask) -> tuple[OperationTask,
 
 
 def _ladder(state: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
-    """Return what may be asked for instead, best first, each with what becomes of it in words."""
+    """Return what may be requested instead, best first, each with what becomes of it in words."""
     requirement, rule = task.requirement, task.stage.cutter
     if rule == "rough":
         tight = replace(requirement, spare=1.0)
@@ -91,9 +91,9 @@ def _second_choice(task: OperationTask, wanted: Candidates, why: str) -> Finding
 
 
 def with_floors_behind_roughing(state: PanelPlanState, tasks: Sequence[OperationTask]) -> None:
-    """Give floors a cutter that finds room where roughing cleared, in pockets whose corners no roughing cutter got into.
+    """Give floors a cutter that finds space where roughing cleared, in pockets whose corners no roughing cutter got into.
 
-    A floor's cutter goes to the bottom at once: one that is slimmer than the last roughing cutter goes into stock that stands as high as
+    A floor's cutter goes to the bottom at once: one that is slimmer than the last roughing cutter goes into stock that is as high as
     the pocket is deep, and above its flutes the neck and shank meet it.
     """
     for task in tasks:
@@ -125,7 +125,7 @@ def behind_rest_roughing(
     state: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]
 ) -> frozenset[str]:
     """Return the ids of rest roughing that a floor's cutter has to wait for: it is slimmer than the first roughing cutter, so it goes into
-    corners where stock stands up to the pocket's rim."""
+    corners where stock is up to the pocket's rim."""
     first = state.tools.get(f"rough-{task.feature}")
     if task.stage.cutter != "floor" or first is None or state.tools[task.id].radius >= first.radius:
         return frozenset()

@@ -100,7 +100,7 @@ def not_planned(refusals: Mapping[str, str], recognition: Recognition) -> list[F
 
 
 def adjacent(recognition: Recognition, part: SectionSource) -> dict[str, frozenset[str]]:
-    """Return for each feature those whose faces share an edge with its own, and those it stands in or holds."""
+    """Return for each feature those whose faces share an edge with its own, and those it is in or holds."""
     graph = part.graph()
     owners: dict[int, set[str]] = {}
     for feature in recognition:

@@ -107,7 +107,7 @@ def make_route(
 
 
 def _from_below(feature: Feature, recognition: Recognition, part: SectionSource) -> bool:
-    """Say whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
+    """Return whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
     tags = feature.with_role("floor", "top")
     if "direction" in feature.attributes or not tags:
         return from_below(feature)
@@ -265,7 +265,7 @@ def _engagement(
 
 
 def _widest(task: OperationTask, settings: RouteSettings) -> float:
-    """Return how wide what stands in front of the cutter can be at once, in mm: a face's shorter side, a rib with its walls' allowance; 0
+    """Return how wide what is in front of the cutter can be at once, in mm: a face's shorter side, a rib with its walls' allowance; 0
     where the area doesn't say."""
     if task.stage.kind == "face":
         return task.width

@@ -1,4 +1,4 @@
-"""The operations that each stage of a typical plan asks for: for every feature the requirement that a
+"""The operations that each stage of a typical plan requests: for every feature the requirement that a
 cutter must fit, by the rule that the stage names."""
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
 
 SPARE = 2.0
-"""Radii of a roughing cutter that should fit from the rim to the middle of a pocket where it is widest: room for a helix and a turn."""
+"""Radii of a roughing cutter that should fit from the rim to the middle of a pocket where it is widest: space for a helix and a turn."""
 
 NEAR_ROUGH, NEAR_WALL, NEAR_FLOOR = 0.9, 0.6, 0.5
 """How much smaller than the largest that fits a cutter may be, over its diameter, when it serves other operations too."""

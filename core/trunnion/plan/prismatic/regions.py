@@ -29,7 +29,7 @@ AROUND = 150.0
 """mm: how far free space is looked at around the blank; more than two diameters of the largest cutter."""
 
 NEAR = 60.0
-"""mm: how far free space is looked at around a top; more than a cutter of the largest diameter and its way in."""
+"""mm: how far free space is looked at around a top; more than a cutter of the largest diameter and its path in."""
 
 
 class SectionSource(Protocol):
@@ -57,7 +57,7 @@ class Band:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Ceiling:
-    """A face that looks down somewhere: the highest place where it does, its highest place at all, and its box in plan."""
+    """A face that looks down somewhere: the highest position where it does, its highest position at all, and its box in plan."""
 
     hangs: float
     top: float
@@ -69,7 +69,7 @@ class _Ceiling:
 class SetupSpace:
     """A part in its blank as a setup sees it; every height and region is in the setup's frame.
 
-    What is asked of it again for each operation, the bands of a pocket and what hangs over, is worked out once.
+    What is queried of it again for each operation, the bands of a pocket and what hangs over, is worked out once.
     """
 
     part: SectionSource
@@ -160,7 +160,7 @@ class SetupSpace:
         return self._ceilings
 
     def free_near(self, z: float, region: Region) -> Region:
-        """Return where nothing of the part stands at a height or hangs over it, around a region by plenty for a cutter over it."""
+        """Return where nothing of the part is at a height or hangs over it, around a region by plenty for a cutter over it."""
         low, high = region.box()
         window = Region.rectangle(*(low - NEAR), *(high + NEAR))
         return window.minus(self.material_over(z, window))
@@ -266,7 +266,7 @@ class SetupSpace:
         return tuple(bands)
 
     def _peak_in(self, band: Band, z: float, feature: Feature, rounding: float) -> float | None:
-        """Return the height of the highest edge that stands in a band below the section at `z` that speaks for it, or None.
+        """Return the height of the highest edge that is in a band below the section at `z` that speaks for it, or None.
 
         The part's edges over the band's plan area, the strip of the fillets at its walls left out: a lip between two pockets that share
         their space above it, the floor of a neighbour that broke through the wall between them. Below such an edge the section is wrong.
@@ -382,7 +382,7 @@ def floor_fillet(feature: Feature) -> float:
 
 
 def parent_of(feature: Feature, recognition: Recognition) -> Feature | None:
-    """Return the feature that a feature stands in or is sunk into, or None."""
+    """Return the feature that a feature is in or is sunk into, or None."""
     for name in ("in", "nested_in"):
         value = feature.sizes.get(name, feature.attributes.get(name))
         for other in recognition:
@@ -400,7 +400,7 @@ def holding(region: Region, points: Iterable[Floats]) -> Region:
 
 
 def enclosed(material: Region, points: Iterable[Floats]) -> Region:
-    """Return the spaces that material encloses and that hold one of the points (2,), without what stands in them.
+    """Return the spaces that material encloses and that hold one of the points (2,), without what is in them.
 
     They are holes of its pieces, so their curves are the section's own.
     """
@@ -475,14 +475,14 @@ def runs(curve: Curve, keep: Bools) -> list[Curve]:
 
 
 def on_rim(curve: Curve, region: Region) -> Bools:
-    """Say of each segment of a curve (n,) whether its middle lies on the boundary of a region."""
+    """Return for each segment of a curve (n,) whether its middle lies on the boundary of a region."""
     segments = curve.segments()
     middles = segments.at(np.arange(len(segments)), 0.5 * segments.length)
     return np.abs(region.signed_distance(middles)) < tolerance.SEW
 
 
 def same_curve(a: Curve, b: Curve) -> bool:
-    """Say whether two curves run along each other from end to end, both closed or both open."""
+    """Return whether two curves run along each other from end to end, both closed or both open."""
     if a.closed != b.closed or abs(a.length - b.length) >= tolerance.SEW:
         return False
     if a.closed and abs(a.area - b.area) >= tolerance.SEW * max(a.length, 1.0):

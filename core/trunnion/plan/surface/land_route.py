@@ -39,7 +39,7 @@ LEAST = 0.02
 SLITS = 0.01
 """Share of a land that balls may come to and no end mill; a land with more of it stays with them as a whole."""
 FEW = 200
-"""Places on a face that say whether end mills finish all of it."""
+"""Positions on a face that say whether end mills finish all of it."""
 APART = 0.1
 """mm that an end mill keeps more than roughing's allowance from sides that are not finished yet."""
 
@@ -52,7 +52,7 @@ class FinishedLands:
     tags: frozenset[int] = frozenset()
 
     def without_feet(self, samples: AreaSamples) -> AreaSamples:
-        """Return the places that are not on the feet of sides that end mills finish."""
+        """Return the positions that are not on the feet of sides that end mills finish."""
         done = np.zeros(len(samples), dtype=bool)
         for each in self.lands:
             done |= each.finishes(samples)
@@ -130,7 +130,7 @@ def plan_lands(
 
 
 def _is_for_balls(state: SurfacePlanState, cutters: LandCutters, balls: Sequence[Tool]) -> bool:
-    """Say whether balls come to too much of a land that no end mill does: into slits that run out from it."""
+    """Return whether balls come to too much of a land that no end mill does: into slits that run out from it."""
     if cutters.remaining.area <= MISSED:
         return False
     samples = samples_on(state.space.skin, cutters.land.tags)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class SurfacePlanner:
-    """Plans layers, outlines, lands and areas; its plane operations are driven by how high the part stands."""
+    """Plans layers, outlines, lands and areas; its plane operations are driven by how high the part is."""
 
     name, noun = "surface", "parts of curved surfaces"
     settings: tuple[type, ...] = (RouteSettings, SurfaceRouteSettings)

@@ -78,9 +78,9 @@ MISSED = 1.0
 MOST = 0.9
 """Share of a face that an upright cutter must reach; else the face counts as hidden from above."""
 LARGEST_LEANING = 16.0
-"""mm: larger balls have no room to lean on parts that need it."""
+"""mm: larger balls have no space to lean on parts that need it."""
 FEW = 200
-"""Places along a wall that say whether a tool has room beside it."""
+"""Positions along a wall that say whether a tool has space beside it."""
 SLENDER = 4
 """How many of the most slender cutters say what is hidden: larger ones reach no more."""
 FALLING = ("rough", "semi")
@@ -480,7 +480,7 @@ def _by_slope(
 ) -> list[tuple[str, tuple[int, ...], str]]:
     """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best.
 
-    Places that lean by more than a limit (rad) are cut by waterlines: a face with some of both is in both operations.
+    Positions that lean by more than a limit (rad) are cut by waterlines: a face with some of both is in both operations.
     """
     above = leans(samples) > limit
     steep = tuple(t for t in tags if above[samples.face == t].mean() > SOME)
@@ -503,12 +503,12 @@ FOR_SHALLOW = ("surface.parallel", "surface.constant")
 STEEP = "surface.waterline"
 """The strategy for steep faces."""
 FIRST = "-steep"
-"""Ends the name of an operation on the steep places of an area. It comes before the others there: from the top down it takes off what would
-stand in the way of a neck or shank at a wall's foot."""
+"""Ends the name of an operation on the steep positions of an area. It comes before the others there: from the top down it takes off what
+would stand in the way of a neck or shank at a wall's foot."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
 COARSE, CHORD_SHARE = 0.01, 0.075
-"""mm: from this scallop height on passes need not follow their way as closely as strategies do by themselves; and how closely of it."""
+"""mm: from this scallop height on passes need not follow their path as closely as strategies do by themselves; and how closely of it."""
 SOME = 0.02
 """Share of a face that is worth another strategy."""
 SLOPE_LIMITS = {
@@ -516,7 +516,7 @@ SLOPE_LIMITS = {
     "surface.constant": ("surface.constant.steepest", 5.0),
     "surface.parallel": ("surface.parallel.steepest", 5.0),
 }
-"""Where strategies for shallow and steep places meet: the setting that says it, and by how many degrees each goes on past the limit."""
+"""Where strategies for shallow and steep positions meet: the setting that says it, and by how many degrees each goes on past the limit."""
 
 
 def first_known(names: Sequence[str]) -> str:
@@ -594,7 +594,7 @@ def _finishers(state: SurfacePlanState) -> tuple[Tool, ...]:
 def _report_unreached(
     state: SurfacePlanState, area: Area, samples: AreaSamples, found: AreaCutters
 ) -> None:
-    """Say which faces no cutter reaches, or not the one that was asked for."""
+    """Return which faces no cutter reaches, or not the one that was requested."""
     lost = [t for t in area.tags if not found.reachable[samples.face == t].any()]
     if lost:
         size = samples.area * float(np.isin(samples.face, lost).sum())

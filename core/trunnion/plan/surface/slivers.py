@@ -70,7 +70,7 @@ def _common(graph: FaceGraph, a: int, b: int) -> float:
 
 
 def _within(skin: Skin, tag: int, faces: Collection[int]) -> bool:
-    """Say whether a face lies within the heights of others."""
+    """Return whether a face lies within the heights of others."""
     mine, theirs = (
         skin.points[skin.triangles[skin.of(tags)], 2] for tags in ((tag,), tuple(faces))
     )

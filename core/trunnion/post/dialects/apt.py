@@ -122,7 +122,7 @@ def _lines(
 
 
 def leaning(path: Toolpath) -> bool:
-    """Say whether the tool leans anywhere on a path."""
+    """Return whether the tool leans anywhere on a path."""
     return not path.work_turns and bool(
         (np.abs(path.axis[:, :2]).max(axis=1, initial=0.0) > tolerance.PARAMETRIC).any()
     )

@@ -19,7 +19,8 @@ Block = tuple[list[int], list[int], int, float]
 class WrittenState:
     """What the control knows at this line of the text. Positions, centres and angles are in ticks of their last decimal.
 
-    `at` is the tip's place, None when it is not known; `angle` that of the rotary axes whose letters are `letters`, None before the first;
+    `at` is the tip's position, None when it is not known; `angle` that of the rotary axes whose letters are `letters`, None before the
+    first;
     `motion` -1 before the first; `feed` is as it was written, empty when it must be written again, and `feed_mode` what it is given by.
     `feeds` is how the section's feeds are written, `plane` which letters its points have.
     """

@@ -16,7 +16,7 @@ from trunnion.geometry.arrays import Floats, unit
 
 AxisField = Callable[[Floats, Floats, Floats], Floats]
 _AT_VECTOR = 1e-9
-"""mm: a contact this close to the place of a vector has that vector."""
+"""mm: a contact this close to the position of a vector has that vector."""
 
 
 def leaning(lead: float, tilt: float) -> AxisField:
@@ -94,7 +94,7 @@ def nearest(curve: Floats, point: Floats) -> Floats:
 
 
 def eased(axis: Floats, reach: float) -> Floats:
-    """Return axes (k, 3) at even steps of a way, each the mean of those about it, weighed by a bell curve `reach` steps wide (one sigma).
+    """Return axes (k, 3) at even steps of a path, each the mean of those about it, weighed by a bell curve `reach` steps wide (one sigma).
 
     What turns at a rate keeps to it: the mean of turns is no faster than the fastest of them.
     """

@@ -1,9 +1,9 @@
 """Tool axes that are free: the nearest to what a field wants that keeps cutter, shank, holder and machine out of trouble.
 
-Along each pass the axis is chosen from directions spread over the sphere, as one cheapest course for the whole pass: near what is wanted,
-turning little and never faster than allowed, away from where something is touched. What is free is only asked where a course has met
-something; contacts that lie close together, on faces that look the same way, share one answer until it proves wrong. The course is then
-eased, and every eased axis is asked again. Where no axis is free the pass has a gap.
+Along each pass the axis is chosen from directions spread over the sphere, as one least-cost path for the whole pass: near what is wanted,
+turning little and never faster than allowed, away from where something is touched. What is free is only queried where a run of axes has met
+something; contacts that lie close together, on faces that look the same way, share one answer until it proves wrong. The axes are then
+eased, and every eased axis is queried again. Where no axis is free the pass has a gap.
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ from trunnion.toolpath.contact_passes.contacts import Contacts, axis_between, be
 from trunnion.toolpath.contact_passes.passes import Pass
 
 FINE, COARSE = 3, 2
-"""Halvings of the directions that a course is chosen from, 9 degrees apart, and of those that are asked, 18 degrees apart."""
+"""Halvings of the directions that a run of axes is chosen from, 9 degrees apart, and of those that are queried, 18 degrees apart."""
 STEP = math.radians(10.5)
-"""Turn from one place of a course to the next: just to the next direction."""
+"""Turn from one position of a run of axes to the next: just to the next direction."""
 STIFFNESS = 1.5
 """mm: what the wanted axis does within this is evened out."""
 EASING = 2.0
-"""Places over which a course is eased."""
+"""Positions over which a run of axes is eased."""
 RIM = 0.1
 """What a direction costs whose neighbours are all taken, as a deviation from the wanted axis (rad squared)."""
 LEAP = 50.0
 """What it costs to lift the tool and set it down with another axis: 20 mm with an axis that is 90 degrees off."""
 ROUNDS = 12
-"""Times that a course is chosen again after something was met."""
+"""Times that a run of axes is chosen again after something was met."""
 AHEAD = 4
-"""Places before and behind one that met something which are asked with it."""
+"""Positions before and behind one that met something which are queried with it."""
 CLOSE, ALIKE = 2.0, 0.25
 """mm and (of the normal's unit sphere) how close contacts lie that share an answer."""
 SMALLEST_SHARE = 0.001
@@ -63,9 +63,9 @@ class LeanLimits:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class FreeAxes:
-    """Free axes of one pass: at samples (k,) along its contacts (2.25: a quarter of the way from the third to the next) axis (k, 3).
+    """Free axes of one pass: at positions (k,) along its contacts (2.25: a quarter of the distance from the third to the next) axis (k, 3).
 
-    free (k,): whether there is one; leap (k,): whether the axis is not reached from the place before without lifting the tool.
+    free (k,): whether there is one; leap (k,): whether the axis is not reached from the position before without lifting the tool.
     """
 
     position: Floats
@@ -74,7 +74,7 @@ class FreeAxes:
     leap: Bools
 
     def runs(self) -> list[FreeAxes]:
-        """Return the pieces that are cut without lifting the tool, those of two places and more."""
+        """Return the pieces that are cut without lifting the tool, those of two positions and more."""
         ends = np.flatnonzero(self.leap | ~self.free | ~np.concatenate([[False], self.free[:-1]]))
         found = []
         for a, b in pairwise([*ends.tolist(), len(self.position)]):
@@ -128,7 +128,7 @@ def leaned(
     chord: float,
     progress: Progress = NO_PROGRESS,
 ) -> list[Pass]:
-    """Return passes of a ball (or a taper with a ball) with the axis leant to a field: the ball's centre stays on its way.
+    """Return passes of a ball (or a taper with a ball) with the axis leant to a field: the ball's centre stays on its path.
 
     Turning the axis while the tip goes straight bends the centre's way: blocks are cut so short that it stays within `chord` mm.
     """
@@ -208,7 +208,7 @@ def leaned_by(
 
 
 def thickened(tool: Tool, clearance: float) -> Tool:
-    """Return a tool whose neck, shank and holder are thicker by a room in mm; its cutting part stays as it is."""
+    """Return a tool whose neck, shank and holder are thicker by a clearance in mm; its cutting part stays as it is."""
     rows = tuple((z0, r0 + clearance, z1, r1 + clearance) for z0, r0, z1, r1 in tool.holder.rows)
     return replace(
         tool,
@@ -219,7 +219,7 @@ def thickened(tool: Tool, clearance: float) -> Tool:
 
 
 def _finely(run: FreeAxes, rows: Floats, turn: float) -> Floats:
-    """Return the places of a run at which its pass has rows, and as many between as keep the axis from turning further than `turn`."""
+    """Return the positions of a run at which its pass has rows, and as many between as keep the axis from turning further than `turn`."""
     low, high = run.position[0], run.position[-1]
     position = np.unique(np.concatenate([[low], rows[(rows > low) & (rows < high)], [high]]))
     axis = run.at(position)
@@ -231,8 +231,8 @@ def _finely(run: FreeAxes, rows: Floats, turn: float) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _AxisSamples:
-    """The places of all courses together: where (k,) along which contacts; point, normal, wanted axis (k, 3) there; from `start` (p + 1,)
-    on those of a pass; `pitch` (p,) mm of travel from place to place."""
+    """The positions of all passes together: where (k,) along which contacts; point, normal, wanted axis (k, 3) there; from `start`
+    (p + 1,) on those of a pass; `pitch` (p,) mm of travel from position to position."""
 
     position: Floats
     point: Floats
@@ -249,7 +249,7 @@ class _AxisSamples:
         limits: LeanLimits,
         allowance: float,
     ) -> _AxisSamples:
-        """Return places at even steps of what the cutter travels."""
+        """Return positions at even steps of what the cutter travels."""
         radius = max(tool.corner_radius, 0.25 * tool.radius)
         positions, points, normals, wanted, pitches = [], [], [], [], []
         for contacts in passes:
@@ -280,9 +280,10 @@ class _AxisSamples:
 
 
 class AxisSearch:
-    """Free axes of contact passes, found as `free_axes` says; knows what was asked so far: a table of what is free, a row for each place.
+    """Free axes of contact passes, found as `free_axes` says; keeps what was queried so far: a table of free directions, a row for each
+    position.
 
-    Whoever finds that a move between two places touches something says so (`met`) and asks for the courses again.
+    Where a move between two positions is found to touch something, `met` takes that in and the axes are requested again.
     """
 
     def __init__(
@@ -299,7 +300,7 @@ class AxisSearch:
         k = len(samples.position)
         self.axis, self.free, self.leap = np.zeros((k, 3)), np.zeros(k, bool), np.zeros(k, bool)
         self.clear, self.column = np.zeros(k, bool), np.zeros(k, dtype=np.int64)
-        # Whether a place has an answer of its own, and whether it takes a direction as asked, not eased.
+        # Whether a position has a result of its own, and whether it takes a direction as requested, not eased.
         self.own, self.raw = np.zeros(k, bool), np.zeros(k, bool)
         self.dirty = np.ones(max(len(samples.start) - 1, 0), bool)
         # Row 0: nothing is known, all that the machine can hold is free.
@@ -321,7 +322,9 @@ class AxisSearch:
         return self.query(self.samples.point.mean(axis=0) + AWAY * point, point)
 
     def found_axes(self, progress: Progress = NO_PROGRESS) -> list[FreeAxes]:
-        """Return the courses of all passes."""
+        """Return the free axes of all passes."""
+        # Lazy collision checking: the cheapest axes are chosen first, and only those are queried; each round learns where they met
+        # something.
         for n in range(ROUNDS):
             progress.at(n / ROUNDS, "Leaning the tool clear")
             if not self._improved():
@@ -344,7 +347,7 @@ class AxisSearch:
         self._learn(rows)
 
     def _improved(self) -> bool:
-        """Choose the courses of passes about which something new is known; say whether what they met is worth another try."""
+        """Choose the axes of passes about which something new is known; return whether what they met is worth another try."""
         for n in np.flatnonzero(self.dirty).tolist():
             self._choose(
                 slice(int(self.samples.start[n]), int(self.samples.start[n + 1])),
@@ -360,11 +363,12 @@ class AxisSearch:
         return len(met) > 0
 
     def _choose(self, rows: slice, pitch: float) -> None:
-        """Choose the course of the places of one pass."""
+        """Choose the axes at the positions of one pass."""
+        # Candidates: vertices of a subdivided icosahedron on the free side of the face, no steeper than the limit.
         point, near, turn = _sphere()
         normal, allowed = self.samples.normal[rows], self.table[self.row[rows]]
         upright = normal @ point.T >= math.cos(self.limits.steepest)
-        # The normal may turn away between two places: half the way to the next ones is kept in sight too.
+        # The normal may turn away between two positions: half the distance to the next ones is kept in sight too.
         for neighbour in (
             np.vstack([normal[1:], normal[-1:]]),
             np.vstack([normal[:1], normal[:-1]]),
@@ -373,6 +377,7 @@ class AxisSearch:
                 self.limits.steepest
             ) * np.linalg.norm(normal + neighbour, axis=1)[:, None]
         allowed = allowed & upright
+        # Viterbi over positions x directions; node cost (off^2 + RIM taken) pitch, edge cost STIFFNESS^2 turn^2 / pitch.
         off = np.arccos(np.clip(self.samples.wanted[rows] @ point.T, -1.0, 1.0))
         taken = 1.0 - _share_near(allowed, near)
         cost = np.where(allowed, (off * off + RIM * taken) * pitch, np.inf)
@@ -388,7 +393,7 @@ class AxisSearch:
         self.axis[rows], self.column[rows] = axis, column
 
     def _eased(self, rows: slice, axis: Floats, free: Bools, leap: Bools) -> Floats:
-        """Return a course's axes eased, run by run, as far as they stay within the steepest lean."""
+        """Return the axes of a run eased, run by run, as far as they stay within the steepest lean."""
         out, ends = (
             axis.copy(),
             np.flatnonzero(leap | ~free | ~np.concatenate([[False], free[:-1]])),
@@ -416,11 +421,13 @@ class AxisSearch:
         """Ask what is free where something was met: once for contacts that are alike, then for the contact itself; a contact that has been
         asked takes its directions as they are, and strikes out the one that failed."""
         k, owner = len(self.row), np.repeat(np.arange(len(self.dirty)), np.diff(self.samples.start))
+        # A position with a row of its own takes directions as they are, and loses the one that failed then.
         struck = met[self.own[met]]
         self.table[self.row[struck[self.raw[struck]]], self.column[struck[self.raw[struck]]]] = (
             False
         )
         self.raw[struck] = True
+        # One whose shared row failed gets a row of its own; those without a row, and their neighbours, share one a node of alike contacts.
         own = met[(self.row[met] > 0) & ~self.own[met]]
         around = np.unique(np.clip(met[:, None] + np.arange(-AHEAD, AHEAD + 1), 0, k - 1))
         shared = np.unique(self.node[around[self.row[around] == 0]])
@@ -430,6 +437,7 @@ class AxisSearch:
         )
         of_node = np.full(int(self.node.max(initial=-1)) + 1, -1, dtype=np.int64)
         of_node[shared] = base + np.arange(len(shared))
+        # Invariant: `row` of each position names the row of `table` that holds for it; passes with changed rows are dirty.
         new = (of_node[self.node] >= 0) & (self.row == 0)
         self.row[new] = of_node[self.node[new]]
         self.row[own] = base + len(shared) + np.arange(len(own))
@@ -438,12 +446,14 @@ class AxisSearch:
         self.dirty[np.unique(owner[new])] = True
 
     def _queried(self, rows: Ints) -> Bools:
-        """Return which directions (k, m) are free at some places: the coarse ones as asked, one between two of them where both are."""
+        """Return which directions (k, m) are free at some positions: the coarse ones as requested, one between two of them where both
+        are."""
         if self.query is None:
             return np.repeat(self.table[:1], len(rows), axis=0)
         point, parents = directions(FINE)
         coarse = len(directions(COARSE)[0])
         p, free = self.samples, np.zeros((len(rows), len(point)), bool)
+        # Coarse directions are queried; a finer one between two is taken as free where both its parents are.
         able = (
             p.normal[rows] @ point[:coarse].T >= math.cos(self.limits.steepest + STEP)
         ) & self.table[0, :coarse]

@@ -1,6 +1,6 @@
-"""Contact passes: where a cutter is to touch the faces one place after the other, before it is known how it stands there.
+"""Contact passes: where a cutter is to touch the faces one position after the other, before its axis there is known.
 
-Between two contacts the face is not asked again: the way is the cubic whose ends lie on the face and run along it (across its normals),
+Between two contacts the face is not queried again: the path is the cubic whose ends lie on the face and run along it (across its normals),
 which on a round face leaves it by less than the sixth power of the turn.
 """
 
@@ -39,7 +39,7 @@ class Contacts:
 
     @property
     def feed(self) -> Floats:
-        """The unit direction of the way at each contact (k, 3), along the face."""
+        """The unit direction of the path at each contact (k, 3), along the face."""
         step = np.diff(self.point, axis=0)
         size = np.linalg.norm(step, axis=1, keepdims=True)
         direction = _scaled(step)
@@ -73,9 +73,9 @@ class Contacts:
 
 
 def between(point: Floats, normal: Floats, feed: Floats, position: Floats) -> tuple[Floats, Floats]:
-    """Return points and unit normals (k, 3) at places (k,) along contacts (n, 3).
+    """Return points and unit normals (k, 3) at positions (k,) along contacts (n, 3).
 
-    Place 2.25 is a quarter of the way from the third contact to the next; `feed` (n, 3) are the unit directions of the way.
+    Position 2.25 is a quarter of the distance from the third contact to the next; `feed` (n, 3) are the unit directions of the path.
     """
     row = np.clip(position.astype(np.int64), 0, len(point) - 2)
     u = (position - row)[:, None]
@@ -92,7 +92,7 @@ def between(point: Floats, normal: Floats, feed: Floats, position: Floats) -> tu
 
 
 def axis_between(axis: Floats, position: Floats) -> Floats:
-    """Return unit axes (k, 3) at places (k,) along axes (n, 3), each turning evenly to the next."""
+    """Return unit axes (k, 3) at positions (k,) along axes (n, 3), each turning evenly to the next."""
     row = np.clip(position.astype(np.int64), 0, len(axis) - 2)
     return slerp(axis[row], axis[row + 1], position - row)
 
@@ -108,7 +108,7 @@ def slerp(start: Floats, end: Floats, share: Floats) -> Floats:
 
 
 def _along(direction: Floats, normal: Floats) -> Floats:
-    """Return the unit directions (k, 3) of a way seen along faces with normals (k, 3)."""
+    """Return the unit directions (k, 3) of a path seen along faces with normals (k, 3)."""
     return _scaled(direction - (direction * normal).sum(axis=1, keepdims=True) * normal)
 
 

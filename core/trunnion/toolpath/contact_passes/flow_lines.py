@@ -1,7 +1,7 @@
 """Flow lines over joined patches between two guide curves, and one continuous spiral where these are rims of a tube or ring.
 
 A blend goes from 0 on the first guide to 1 on the second (`geometry/sheet/fields.py`); its level lines are the passes, as many as keep
-every two neighbours within a stepover. They are ways of contacts: where the tool leans on them is for others to say.
+every two neighbours within a stepover. They are lines of contacts: where the tool leans on them is for others to say.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ ENOUGH = 6000
 SMALLEST = 0.002
 """Share of the area whose steps may be wider than the passes' own: a blend stands still in a sharp corner between guide and rim."""
 MOST_DENSE = 8.0
-"""Passes in the room of one, on the average over an area and one more, from which on flow lines are no way to cut it: guides run into each
-other, or it is a scrap whose guides have little to do with its shape."""
+"""Passes in the room of one, on the average over an area and one more, from which on flow lines are no way to cut it: guides run
+into each other, or it is a scrap whose guides have little to do with its shape."""
 
 
 class DenseFlowLines(Refused):

@@ -98,7 +98,7 @@ def adjacent_guides(
 
 
 def _on_triangles(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
-    """Say which points (k,) of a rim lie on triangles (t, 3) of a skin: on a point of these, or between two that one of their sides
+    """Return which points (k,) of a rim lie on triangles (t, 3) of a skin: on a point of these, or between two that one of their sides
     joins."""
     used = np.unique(triangles)
     if not len(used):

@@ -35,20 +35,20 @@ NEAR = 3.0
 QUARTER = 16
 """Straight moves in a lead's quarter circle: at 2 mm, 2 um from it."""
 BETWEEN = 9
-"""Places between two leads that are asked for room."""
+"""Positions between two leads that are tested for space."""
 LIFT_STEP = 0.02
 """mm: the difference of what two neighbours on a lead are lifted by, from which on the lead is left out."""
 SAME = 1e-9
 """Two directions that differ by less are one."""
 REORIENT = math.cos(math.radians(60.0))
-"""The least part along z of an axis that may turn on its way over the work; a tool that leans more is set upright before."""
+"""The least part along z of an axis that may turn on a move over the work; a tool that leans more is set upright before."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkParameters:
     """How passes are linked: the `stepover` between them, the `safety` distance of rapids and the `lead_radius` in mm; `order` is "given"
     or "nearest"; `reversing` allows passes to be cut the other way where that is nearer; `chord` is the chord error of links, mm. With
-    `arcs` a near pass is reached by the leads of both, and above the stock where these have no room: for walls, beside which a cutter that
+    `arcs` a near pass is reached by the leads of both, and above the stock where these have no space: for walls, beside which a cutter that
     follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm."""
 
     stepover: float
@@ -75,6 +75,7 @@ def linked(
     passes = [p for p in passes if len(p) > 1]
     if not passes:
         return EMPTY
+    # Order, then leads and links of all passes at once: drops on the skin are cheap only in batches.
     passes = _ordered(passes, parameters, progress.part(0.0, 0.2))
     near = _near(passes, parameters)
     leads_in, leads_out, has_links = _leads(
@@ -90,6 +91,7 @@ def linked(
         )
     else:
         links = iter(_links(passes, near, drive, tool, parameters, progress.part(0.4, 0.9)))
+    # Assemble: a near pass is linked on the surface, a far one by its leads and a travel through the air.
     blocks = _Blocks(tool, data, stock, setup, drive, parameters.safety)
     for k, one in enumerate(passes):
         progress.at(0.9 + 0.1 * k / len(passes), "Linking passes")
@@ -174,7 +176,7 @@ class _Blocks:
         )
 
     def _lift(self, position: Floats) -> None:
-        """Go over a place, upright: no higher than what may be on the way demands."""
+        """Go over a position, upright: no higher than what may be in between demands."""
         safe = lowest_tip(self._air, self.here[:2], position[:2]) + self._air.safety
         height = min(max(safe, float(self.here[2]), float(position[2])), self._air.clearance)
         self._rapid(np.append(self.here[:2], height), UPRIGHT)
@@ -198,8 +200,8 @@ class _Blocks:
             self._rapid(stop, axis)
 
     def _outside(self, here: Floats, axis: Floats) -> list[Floats]:
-        """Return the places that a tool passes on its way along its axis from the work up to clearance: past the blank's side and up from
-        there where it leans so much that the way up is longer."""
+        """Return the positions that a tool passes along its axis from the work up to clearance: past the blank's side and up
+        from there where it leans so much that the path up is longer."""
         height = self._air.clearance + _below(self._tool, float(axis[2]))
         up = (height - here[2]) / axis[2] if axis[2] > 0.0 else math.inf
         aside = (
@@ -241,7 +243,7 @@ def _is_upright(axis: Floats) -> bool:
 
 
 def _goes(position: Floats, axis: Floats) -> Bools:
-    """Say which blocks (n,) go anywhere or turn the tool: posts write four decimals, so a shorter move would be an empty block."""
+    """Return which blocks (n,) go anywhere or turn the tool: posts write four decimals, so a shorter move would be an empty block."""
     kept = np.ones(len(position), dtype=bool)
     while True:
         rows = np.flatnonzero(kept)
@@ -271,6 +273,7 @@ def _ordered(passes: Sequence[Pass], parameters: LinkParameters, progress: Progr
 
 def _nearest(passes: Sequence[Pass], reversing: bool, progress: Progress) -> list[Pass]:
     """Return the passes so that each begins near where the one before ends, from the first on."""
+    # Greedy nearest neighbour on the passes' ends, O(m^2).
     starts, ends = (np.array([p.tip[k] for p in passes]) for k in (0, -1))
     out, remaining = [passes[0]], np.ones(len(passes), dtype=bool)
     remaining[0] = False
@@ -287,7 +290,7 @@ def _nearest(passes: Sequence[Pass], reversing: bool, progress: Progress) -> lis
 
 
 def _begun(one: Pass, position: Floats) -> Pass:
-    """Return a closed pass that begins at its tip nearest to a place."""
+    """Return a closed pass that begins at its tip nearest to a position."""
     row = int(np.argmin(np.linalg.norm(one.tip[:-1] - position, axis=1)))
     order = np.append(np.roll(np.arange(len(one) - 1), -row), row)
     return Pass(tip=one.tip[order], axis=one.axis[order], normal=one.normal[order], closed=True)
@@ -312,7 +315,7 @@ def _overlapped(one: Pass, overlap: float) -> Pass:
 
 
 def _near(passes: Sequence[Pass], parameters: LinkParameters) -> Bools:
-    """Say of each pass but the last whether the next one is reached without lifting."""
+    """Return for each pass but the last whether the next one is reached without lifting."""
     ends, starts = (
         np.array([p.tip[-1] for p in passes[:-1]]).reshape(-1, 3),
         np.array([p.tip[0] for p in passes[1:]]).reshape(-1, 3),
@@ -330,7 +333,7 @@ def _links(
     parameters: LinkParameters,
     progress: Progress,
 ) -> list[Floats]:
-    """Return the ways over the surface (k, 3) from the ends of near passes to the next ones: straight, lifted where that would gouge.
+    """Return the paths over the surface (k, 3) from the ends of near passes to the next ones: straight, lifted where that would gouge.
 
     Between leaning passes they are straight: a stepover is short.
     """
@@ -355,7 +358,7 @@ def _links(
 
 
 def _bridged(points: Floats, chord: Floats, allowance: float, error: float) -> Floats:
-    """Return a way over the surface (k, 3), the height of the chord (2, 3) between its ends where that is higher."""
+    """Return a path over the surface (k, 3), the height of the chord (2, 3) between its ends where that is higher."""
     run = np.hypot(*(points[:, :2] - chord[0, :2]).T)
     share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(points))
     lifted = np.column_stack(
@@ -375,7 +378,7 @@ def _leads(
     progress: Progress,
 ) -> tuple[Floats, Floats, Bools]:
     """Return the links (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
-    would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""
+    would gouge. Also return for each pass but the last whether the path off it and onto the next one needs no lifting (m - 1,)."""
     lead_in = _arcs(
         np.array([p.tip[0] for p in passes]),
         np.array([_off(p.tip, p.axis[0]) for p in passes]),
@@ -391,6 +394,7 @@ def _leads(
         parameters.lead_radius,
     )
     upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
+    # Drop the cutter at all points of leads and of the chords between them, and lift what would gouge: max(floor + allowance - z, 0).
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
     between = lead_out[:-1, -1:] + share * (lead_in[1:, :1] - lead_out[:-1, -1:])
     links = (lead_in, lead_out, between)
@@ -421,6 +425,7 @@ def _leads(
         arcs[uneven] = (
             tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
         )
+    # A link along both arcs holds where neither arc nor the chord between was lifted by more than the chord error.
     has_links = (lifts[0][1:].max(axis=1, initial=0.0) <= parameters.chord) & (
         lifts[1][:-1].max(axis=1, initial=0.0) <= parameters.chord
     )

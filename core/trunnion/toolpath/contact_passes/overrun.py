@@ -19,12 +19,13 @@ from trunnion.geometry.sheet.skin import Skin
 SMOOTH = math.cos(math.radians(45.0))
 """Cosine of the most that a strip turns away from the rim: it may run up a tight fillet, but not round an edge."""
 CLOSE = 0.25
-"""Of the strip's width: how far apart places along the rim are that distances are measured from."""
+"""Of the strip's width: how far apart positions along the rim are that distances are measured from."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OverrunStrip:
-    """The strip of a width (mm) past the rim of an area; the rim's places (k, 3) and the outward unit normals (k, 3) of the area there."""
+    """The strip of a width (mm) past the rim of an area; the rim's positions (k, 3) and the outward unit normals (k, 3) of the area
+    there."""
 
     skin: Skin
     position: Floats
@@ -53,7 +54,8 @@ class OverrunStrip:
         )
 
     def has(self, contact: Floats, facet: Ints) -> Bools:
-        """Say of contacts (n, 3) on triangles (n,) of the skin, -1: none, whether they lie in the strip, or as near to the rim inside."""
+        """Return for contacts (n, 3) on triangles (n,) of the skin, -1: none, whether they lie in the strip, or as near to the rim
+        inside."""
         found = np.zeros(len(contact), dtype=bool)
         rows = np.flatnonzero(facet >= 0)
         if len(rows) and len(self.position):

@@ -183,7 +183,7 @@ class PathBuilder:
             np.array(self._feed[first:]),
         )
         if first:
-            # A later piece begins where the one before ended, which a path can only say by a rapid to that place.
+            # A later piece begins where the one before ended, which a path can only say by a rapid to that position.
             motion[0], feed[0], centre[0] = Motion.RAPID, 0.0, np.nan
         return Toolpath(
             position=position,

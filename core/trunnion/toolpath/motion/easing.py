@@ -38,7 +38,7 @@ def eased(
 ) -> Toolpath:
     """Return a path with slower feeds where it removes more than a full slot of the operation's depth would at `slot` times its feed.
 
-    `stock` is what the path is planned on. Blocks are cut where the feed changes; places and marks stay what they are.
+    `stock` is what the path is planned on. Blocks are cut where the feed changes; positions and marks stay what they are.
     """
     return _eased(path, tool, data.feed, stock, slot * tool.diameter * data.depth, progress)
 

@@ -1,6 +1,6 @@
 """From one direction of the tool to another: rapids that keep the whole tool clear of the work while it turns.
 
-Round everything that stands on the table lies a sphere. A tool whose tip is outside it and that points at its middle is outside with all of
+Round everything that is on the table lies a sphere. A tool whose tip is outside it and that points at its middle is outside with all of
 its body, however wide: it stands behind the plane that touches the sphere at the tip. So the tool goes out along its axis until it is
 behind such a plane, turns round the sphere, and comes in along its new axis.
 """
@@ -20,7 +20,7 @@ from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.setup import Setup
 
 STEP = math.radians(5.0)
-"""Largest turn in one block: the straight ways of the tip between stay outside the sphere because it is taken a thousandth larger."""
+"""Largest turn in one block: the straight paths of the tip between stay outside the sphere because it is taken a thousandth larger."""
 LEAST_SAFE = 1.0
 """mm: how far outside of everything the sphere lies at least, whatever the clearance."""
 Pose = tuple[Floats, Floats]

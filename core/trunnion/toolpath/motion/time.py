@@ -4,7 +4,7 @@ Along a block the speed follows a trapezoid. Through a joint that turns by an an
 by at most d may go at sqrt(A d s / (1 - s)), s = cos(a / 2) (the circle that touches both blocks and passes d from the joint).
 On an arc the centripetal acceleration bounds the speed.
 
-With rotary axes the blocks are ways of all axes together, and each axis has its own acceleration and rate: a tip that stands while the axis
+With rotary axes the blocks are paths of all axes together, and each axis has its own acceleration and rate: a tip that rests while the axis
 turns takes the time that the slowest axis needs.
 """
 
@@ -101,7 +101,7 @@ class _AxisTravel:
 
 
 def _axis_travel(path: Toolpath, work_position: WorkPosition | None, gauge: float) -> _AxisTravel:
-    """Return the way of a path: on a machine with rotary axes that of the positions of all its axes."""
+    """Return the travel along a path: on a machine with rotary axes that of the positions of all its axes."""
     tip, sweep = path.lengths(), path.sweeps()
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
     position, axis, centre = path.position, path.axis[arcs], path.centre[arcs]

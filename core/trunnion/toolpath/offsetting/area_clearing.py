@@ -32,7 +32,7 @@ from trunnion.toolpath.offsetting.rings import OffsetRing
 from trunnion.toolpath.offsetting.trimming import PassTrimming
 
 RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
-"""Of the radius: how far before an open pass a place that is certainly free is looked for."""
+"""Of the radius: how far before an open pass a position that is certainly free is looked for."""
 
 RUN_OUT_DIRECTIONS = (
     (-1.0, 0.0),
@@ -46,7 +46,7 @@ RUN_OUT_DIRECTIONS = (
 """Where it is looked for: along the pass's direction and to its left; straight before the start is best."""
 
 NEXT_PASS = 2.5
-"""Of the step: a place no farther away is on the neighbouring pass and may be fed to straight."""
+"""Of the step: a position no farther away is on the neighbouring pass and may be fed to straight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,7 +65,7 @@ class ClearingLayer:
     """What is cleared at height `z`: the rings, the `axis_region` that links and entries may use, the `clip` outside which nothing is
     wanted (None: everything in the rings), and the height `top` under which material may begin (None: as the stock says).
 
-    `wanted`: the area whose stock a clipped pass must meet, `worth` how high over `z` it must stand there to count; where a pass meets
+    `wanted`: the area whose stock a clipped pass must meet, `worth` how high over `z` it must be there to count; where a pass meets
     none it is left out (None: every pass is cut as a whole)."""
 
     z: float
@@ -77,7 +77,7 @@ class ClearingLayer:
     worth: float = 0.0
 
     def wants(self, points: Floats) -> Floats:
-        """Return how far points (k, 2) are inside the clip and the room, rims counted in (negative outside)."""
+        """Return how far points (k, 2) are inside the clip and the axis region, rims counted in (negative outside)."""
         depth = self.axis_region.depth(points)
         return (
             depth if self.clip is None else np.minimum(depth, self.clip.signed_distance(points))
@@ -107,6 +107,7 @@ def _cut_ring(
     trimming: PassTrimming | None,
     progress: Progress,
 ) -> None:
+    # Depth first: what lies further inside is cut before the ring round it, so each ring begins beside cut material.
     for inner in nearest_first(ring.inner, lambda: builder.here, _ring_away):
         _cut_ring(builder, layer, inner, parameters, trimming, progress)
     feed = builder.data.feed * (1.0 if ring.inner else parameters.slot)
@@ -133,6 +134,7 @@ def _cut_closed(
     here = builder.here
     s = loop.nearest(here[:2]) if here is not None else 0.0
     start, _ = loop.at(s)
+    # How the tool gets down: it stays down, comes down in the free, feeds across from the ring inside, or enters by `_open_up`.
     if not _stays_down(builder, layer, start, parameters):
         free = _free_position(builder, layer, loop, s)
         if free is not None:
@@ -259,7 +261,8 @@ def _come_to(
 def _stays_down(
     builder: PathBuilder, layer: ClearingLayer, start: Floats, parameters: ClearingParameters
 ) -> bool:
-    """Feed straight to a place when the tool is down, the way stays in the room, and it is short or certainly free; say whether."""
+    """Feed straight to a position when the tool is down, the path stays in the axis region, and it is short or certainly free; say
+    whether."""
     here = builder.here
     if (
         here is None

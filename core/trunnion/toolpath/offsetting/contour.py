@@ -1,4 +1,4 @@
-"""Passes along walls: the rim of the room of the axis where a guide line made it, with leads, and straight on past open ends."""
+"""Passes along walls: the rim of the axis region where a guide line made it, with leads, and straight on past open ends."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from trunnion.toolpath.offsetting.entry import ramp_along, ramp_round
 from trunnion.toolpath.offsetting.lead import cut_closed, enter, fitting_lead, from_free, leave
 
 PAST = (1.2, 0.6, 0.3)
-"""Of the cutter's radius: how far past its end an open wall is followed, as far as there is room."""
+"""Of the cutter's radius: how far past its end an open wall is followed, as far as there is space."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +33,7 @@ class ContourApproach:
 
 
 def contour_parts(axis_region: AxisRegion, guide: Curve, distance: float) -> list[Curve]:
-    """Return the parts of the room's rim that lie `distance` from a guide line, the room on their left."""
+    """Return the parts of the axis region's rim that lie `distance` from a guide line, the axis region on their left."""
     found: list[Curve] = []
     for rim in axis_region.region.curves():
         found += parts_where(
@@ -64,7 +64,7 @@ def _past_ends(guide: Curve, points: Floats, distance: float) -> Floats:
 
 
 def length_out_of_reach(axis_region: AxisRegion, guide: Curve, distance: float) -> float:
-    """Return how much of a guide line in mm an axis in the room can't come within `distance` of."""
+    """Return how much of a guide line in mm an axis in the axis region can't come within `distance` of."""
     s, points = points_along(guide)
     spans = np.diff(np.append(s, guide.length))
     if len(spans) < len(points):
@@ -98,7 +98,7 @@ def cut_open(
     *,
     past: bool = True,
 ) -> None:
-    """Cut an open contour, followed straight on past both ends as far as there is room when `past`, with leads."""
+    """Cut an open contour, followed straight on past both ends as far as there is space when `past`, with leads."""
     feed = builder.data.feed
     (first, heading), (last, last_heading) = part.at(0.0), part.at(part.length)
     begin, end = (

@@ -24,11 +24,11 @@ GAP = 0.3
 """mm above the material where the helix or ramp begins."""
 
 GRID = 24
-"""Places along each side of a box that are tried for the deepest place of a room."""
+"""Positions along each side of a box that are tried for the deepest position of an axis region."""
 
 
 def deepest_position(area: AxisRegion, axis_region: AxisRegion) -> tuple[Floats, float]:
-    """Return the place (2,) in `area` that is deepest inside `axis_region`, and how deep it is there."""
+    """Return the position (2,) in `area` that is deepest inside `axis_region`, and how deep it is there."""
     low, high = area.region.box()
     best, depth = 0.5 * (low + high), -math.inf
     for _ in range(2):
@@ -46,7 +46,7 @@ def deepest_position(area: AxisRegion, axis_region: AxisRegion) -> tuple[Floats,
 
 
 def helix_radius(builder: PathBuilder, depth: float) -> float:
-    """Return the radius of the helix that fits where the room is `depth` deep, or 0 when none does."""
+    """Return the radius of the helix that fits where the axis region is `depth` deep, or 0 when none does."""
     tool = builder.tool
     flat = tool.radius - tool.corner_radius
     widest = min(2.0 * WIDEST_HELIX * max(flat, 0.5 * tool.radius), 0.98 * depth)
@@ -86,7 +86,7 @@ def helix(
 def ramp_round(
     builder: PathBuilder, loop: Curve, s: float, top: float, z: float, angle: float
 ) -> None:
-    """Go down along a closed contour from its place `s`, round and round until `z`, ending where it began."""
+    """Go down along a closed contour from its position `s`, round and round until `z`, ending where it began."""
     opened = loop.split(s, s)
     begin = top + GAP
     rounds = max(

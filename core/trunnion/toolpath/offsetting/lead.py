@@ -16,14 +16,14 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_free, may_plunge, travel
 
 SHARES = (1.0, 0.6, 0.35, 0.2)
-"""Shares of the wished radius that are tried one after the other where there is little room."""
+"""Shares of the wanted radius that are tried one after the other where there is little space."""
 
 RUN_INS = (0.0, 0.5, 1.0, 2.0, 3.0, 4.0)
 """Of the cutter's radius: straights before the arc that are tried until one begins off the material."""
 
 QUARTER = 0.5 * math.pi
 STARTS = 12
-"""Places of a closed contour that are tried as its start."""
+"""Positions of a closed contour that are tried as its start."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +54,7 @@ def lead_out(point: Floats, tangent: Floats, radius: float) -> Lead:
 def fitting_lead(
     point: Floats, tangent: Floats, radius: float, axis_region: AxisRegion, *, leaves: bool
 ) -> Lead | None:
-    """Return the largest lead up to `radius` that stays in the room, or None."""
+    """Return the largest lead up to `radius` that stays in the axis region, or None."""
     for share in SHARES:
         lead = (lead_out if leaves else lead_in)(point, tangent, share * radius)
         if axis_region.holds(_arc_points(lead, point)):
@@ -75,8 +75,8 @@ def cut_closed(
 ) -> bool:
     """Cut a closed contour from its best start, with a lead in, `rounds` times round, an overlap and a lead out.
 
-    The best start has room for the largest lead, in a place that is certainly free, in the middle of a long straight. Say whether
-    a lead was found that begins in the room and in no full material; nothing is cut otherwise.
+    The best start has space for the largest lead, in a position that is certainly free, in the middle of a long straight. Return whether
+    a lead was found that begins in the axis region and in no full material; nothing is cut otherwise.
     """
     start = _best_start(builder, loop, z, axis_region, radius)
     if start is None:
@@ -104,7 +104,7 @@ def enter(builder: PathBuilder, lead: Lead, point: Floats, z: float, feed: float
 
 
 def leave(builder: PathBuilder, lead: Lead | None, z: float, feed: float) -> None:
-    """Follow a lead off the contour, when there is room for one."""
+    """Follow a lead off the contour, when there is space for one."""
     if lead is not None:
         builder.arc((*lead.outside, z), lead.centre, QUARTER, feed, Mark.LEAD)
 
@@ -121,7 +121,7 @@ def start_positions(loop: Curve) -> list[float]:
 def from_free(
     builder: PathBuilder, lead: Lead, tangent: Floats, z: float, axis_region: AxisRegion
 ) -> tuple[Lead, bool]:
-    """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and say whether it does."""
+    """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and whether it does."""
     for share in RUN_INS:
         before = lead.outside + share * builder.tool.radius * _left_normal(tangent)
         if is_free(builder, before, z) and axis_region.holds_line(before, lead.outside):

@@ -18,7 +18,7 @@ FAR = 10_000.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClearingPasses:
-    """The room of the axis, its rings, and the clip of an open area (None: closed all round)."""
+    """The axis region, its rings, and the clip of an open area (None: closed all round)."""
 
     axis_region: AxisRegion
     rings: tuple[OffsetRing, ...]
@@ -36,7 +36,7 @@ def passes_over(
 ) -> ClearingPasses:
     """Return the passes of a cutter whose axis keeps `distance` from the boundary's rim; none when it fits nowhere.
 
-    `mitred`: the walls have a fillet at their foot, which `Room.of` must keep whole at sharp edges.
+    `mitred`: the walls have a fillet at their foot, which `AxisRegion.of` must keep whole at sharp edges.
     """
     closed = not boundary.minus(wanted.offset(OPEN_MARGIN))
     axis_region = AxisRegion.of(boundary, distance, mitred=mitred and closed)

@@ -1,6 +1,6 @@
-"""Contour-parallel passes: nested offsets of the room of the axis, as a tree from the rim inwards.
+"""Contour-parallel passes: nested offsets of the axis region, as a tree from the rim inwards.
 
-No post stays between or inside the passes as long as the step is at most the radius of the cutter's flat end: a place between two
+No post stays between or inside the passes as long as the step is at most the radius of the cutter's flat end: a position between two
 neighbouring offsets is nearer than one step to the outer one, and the innermost offset is nowhere deeper than one step. With a rounded
 end a longer step leaves ridges as high as the end has risen there.
 """
@@ -21,18 +21,18 @@ SAFE_SHARE = 0.95
 """Of the flat end's radius: the widest step; the rest is for the machine."""
 
 CLIP_SPACING = 2.0
-"""mm between the places of a clip's rim that decide whether a ring can touch it."""
+"""mm between the positions of a clip's rim that decide whether a ring can touch it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OffsetRing:
-    """One piece of an offset of the room: its rim is a pass, `inner` are the pieces one step further inside."""
+    """One piece of an offset of the axis region: its rim is a pass, `inner` are the pieces one step further inside."""
 
     region: Region
     inner: tuple[OffsetRing, ...]
 
     def curves(self) -> tuple[Curve, ...]:
-        """Return the loops of the rim, the room on the left of each."""
+        """Return the loops of the rim, the axis region on the left of each."""
         return self.region.curves()
 
 
@@ -44,7 +44,7 @@ def safe_step(tool: Tool, width: float, ridge: float = 0.0) -> float:
 
 
 def ring_tree(region: Region, step: float, clip: Region | None = None) -> tuple[OffsetRing, ...]:
-    """Return the rings of a room, a step apart; with a clip, only those that can touch it."""
+    """Return the rings of an axis region, a step apart; with a clip, only those that can touch it."""
     rim = (
         None
         if clip is None
@@ -74,7 +74,7 @@ def _ring(piece: Region, step: float, clip: _Clip | None) -> OffsetRing:
 
 
 def _overlaps(piece: Region, clip: _Clip | None) -> bool:
-    """Say whether a piece has some of a clip's rim in it or lies inside the clip, as a closed space beside open ones does."""
+    """Return whether a piece has some of a clip's rim in it or lies inside the clip, as a closed space beside open ones does."""
     return (
         clip is None
         or any(bool(piece.contains(p).any()) for p in clip.rim)

@@ -163,7 +163,7 @@ def _reaching(rests: tuple[Region, ...], tool: Tool) -> Region:
 def _passes(
     level: DriveLevel, distance: float, step: float, near: Region, *, mitred: bool
 ) -> tuple[AxisRegion, tuple[Curve, ...]]:
-    """Return the room and the rims of its rings that come near a rest, the innermost first."""
+    """Return the axis region and the rims of its rings that come near a rest, the innermost first."""
     axis_region = AxisRegion.of(level.boundary, distance, mitred=mitred and is_closed(level))
     if not axis_region.region:
         return axis_region, ()

@@ -36,7 +36,7 @@ SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
 
 RIM_SPACING = 2.0
-"""mm between the places of the blank's rim whose distance from the profile is measured."""
+"""mm between the positions of the blank's rim whose distance from the profile is measured."""
 
 
 @settings("plane.profile_rough")

@@ -35,7 +35,7 @@ RIDGE = 0.3
 """mm: highest ridge between passes of a cutter with a rounded end; the next layer or the floor's finish takes it away."""
 
 WORTH = 0.2
-"""Of a layer: stock that stands no higher over it isn't worth a pass in it."""
+"""Of a layer: stock that is no higher over it isn't worth a pass in it."""
 
 
 @settings("plane.rough")
@@ -123,7 +123,7 @@ def rough(
 
 
 def _horizontals(drive: PlaneDrive, row: int) -> list[float]:
-    """Return the heights of horizontal faces that the layers of a band end on: floors, and tops of what stands in the next band."""
+    """Return the heights of horizontal faces that the layers of a band end on: floors, and tops of what is in the next band."""
     level = drive.levels[row]
     found = [f.z for f in drive.floors]
     if (
@@ -140,7 +140,7 @@ def _foot(drive: PlaneDrive, tool: Tool, z: float) -> float:
 
 
 def _is_cleared(builder: PathBuilder, wanted: Region, z: float) -> bool:
-    """Say whether the stock has nothing left above `z` over an area, its rim not looked at."""
+    """Return whether the stock has nothing left above `z` over an area, its rim not looked at."""
     stock = builder.stock()
     inner = wanted.offset(-RIM * stock.cell)
     return bool(inner) and stock.is_clear(z + tolerance.COINCIDENT, inner)
@@ -158,7 +158,8 @@ def _too_wide(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Finding:
 
 
 def _remaining_area(level: DriveLevel, distance: float, region: Region) -> float:
-    """Return the area in mm2 that a cutter leaves of what is wanted, its axis everywhere in a room that keeps a distance from the rim."""
+    """Return the area in mm2 that a cutter leaves of what is wanted, its axis everywhere in an axis region that keeps a distance from the
+    rim."""
     return level.wanted.minus(region.offset(distance + tolerance.SEW)).area
 
 

@@ -156,7 +156,7 @@ def _cut_floor_rest(
     approach: ContourApproach,
     progress: Progress,
 ) -> None:
-    """Cut what a larger floor cutter left where it had no room: floor that neither it nor the wall passes have certainly reached."""
+    """Cut what a larger floor cutter left where it had no space: floor that neither it nor the wall passes have certainly reached."""
     stock = builder.stock()
     inner = each.region.offset(-each.fillet - RIM * stock.cell)
     positions = stock.positions_above(each.z + tolerance.COINCIDENT, inner)

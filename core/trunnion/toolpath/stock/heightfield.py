@@ -105,7 +105,7 @@ class PlanningStock:
         return volume
 
     def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
-        """Return the greatest height that a disc may touch on its way from `start` to `end` (2,), or -inf over nothing."""
+        """Return the greatest height that a disc may touch on its path from `start` to `end` (2,), or -inf over nothing."""
         a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
         return float(
             heightfield.zmap_highest(
@@ -114,11 +114,11 @@ class PlanningStock:
         )
 
     def is_clear(self, z: float, area: Region) -> bool:
-        """Say whether no cell in an area is higher than `z`; an area without cells is."""
+        """Return whether no cell in an area is higher than `z`; an area without cells is."""
         if not area:
             return True
         some = self._above(z, area)
-        # Most areas that are not clear show it at a few places; only then are all of them looked at.
+        # Most areas that are not clear show it at a few positions; only then are all of them looked at.
         few = some[:: max(1, len(some) // 64)]
         return not (len(few) and area.contains(few).any()) and not (
             len(some) and area.contains(some).any()
@@ -175,7 +175,7 @@ def chords(path: Toolpath) -> tuple[Floats, Floats, Ints, float]:
 
 
 def positions_on(path: Toolpath, rows: Ints, share: Floats) -> Floats:
-    """Return places (m, 3) on blocks (m,) of a path, at shares (m,) of their way."""
+    """Return positions (m, 3) on blocks (m,) of a path, at shares (m,) of their length."""
     return _positions(path, path.starts(), path.sweeps(), rows, share)
 
 

@@ -1,6 +1,6 @@
 """One planning stock for each direction that a tool comes from, and what each knows of what the others have cut.
 
-A field of heights says that everything above it is gone. Seen from another direction that leaves, column by column, the highest place in
+A field of heights says that everything above it is gone. Seen from another direction that leaves, column by column, the highest position in
 the blank that no field has above it: taken over in steps of a cell, always on the side of material.
 """
 
@@ -23,7 +23,7 @@ from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 NEIGHBOURHOOD = 3
-"""Cells that a place is compared with in another field, in each of its directions: the cells it may lie in for all of its own cell."""
+"""Cells that a position is compared with in another field, in each of its directions: the cells it may lie in for all of its own cell."""
 
 
 class StockViews:

@@ -1,7 +1,7 @@
 """Finishing by passes in parallel upright planes, as far apart as the wanted scallop height allows where the faces lean most across them.
 
-Planes are laid over all places where the cutter's tip is while it touches the area, and each is followed over the whole part's skin. What
-touches a face of the area is cut, and a little more on either side, so that no mark stays where areas meet.
+Planes are laid over all positions where the cutter's tip is while it touches the area, and each is followed over the whole part's skin.
+What touches a face of the area is cut, and a little more on either side, so that no mark stays where areas meet.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 ALONG = 0.1
-"""Of the cutter's radius: distance of the places along a plane that are asked for what the cutter touches."""
+"""Of the cutter's radius: distance of the positions along a plane that are queried for what the cutter touches."""
 HALVINGS = 7
-"""Times the distance between a place that touches the area and one that doesn't is halved."""
+"""Times the distance between a position that touches the area and one that doesn't is halved."""
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
 HasContact = Callable[[Ints, Floats, Progress], Bools]
-"""Says for planes (n,) and positions (n,) along them whether the cutter touches the area there."""
+"""Returns for planes (n,) and positions (n,) along them whether the cutter touches the area there."""
 
 
 @settings("surface.parallel")
@@ -225,7 +225,7 @@ class _Planes:
 
 
 def _planes(slopes: FacetSlopes, tool: Tool, height: float, settings: ParallelSettings) -> _Planes:
-    """Return the planes of the direction that is asked for, or of the better one of both sides of the box around the area."""
+    """Return the planes of the direction that is requested, or of the better one of both sides of the box around the area."""
     if settings.direction == "angle":
         return _laid(slopes, tool, height, math.radians(settings.angle), settings.stepover)
     box = shapely.get_coordinates(
@@ -247,7 +247,7 @@ def _planes(slopes: FacetSlopes, tool: Tool, height: float, settings: ParallelSe
 
 
 def _laid(slopes: FacetSlopes, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
-    """Return the planes at an angle (radians), from one side of the area to the other, as far apart as any place near both allows."""
+    """Return the planes at an angle (radians), from one side of the area to the other, as far apart as any position near both allows."""
     along, across = (
         np.array([math.cos(angle), math.sin(angle)]),
         np.array([-math.sin(angle), math.cos(angle)]),
@@ -291,6 +291,7 @@ def _passes(
     planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: ParallelSettings, progress: Progress
 ) -> list[Pass]:
     """Return the passes where the cutter touches the area, plane by plane; none where it touches it nowhere."""
+    # What a drop at a position in a plane touches: the area itself, or the strip past its rim.
     pieces, lowest = lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length
     on_area = np.zeros(len(drive.skin.triangles), dtype=bool)
     on_area[planes.triangles] = True
@@ -328,6 +329,7 @@ def _passes(
     plane, runs = _joined(plane, runs, overlap, tool.radius)
     if not len(runs):
         return []
+    # Follow the runs over the whole skin, so that nothing beside the area is gouged (`tracing.follow`).
     lines = [
         planes.at[p] * planes.across + np.outer(r, planes.along)
         for p, r in zip(plane, runs, strict=True)
@@ -355,7 +357,7 @@ def _facing(skin: Skin, facet: Ints) -> Floats:
 
 
 def _too_steep(drive: SurfaceDrive, level: FacetSlopes) -> tuple[Finding, ...]:
-    """Return a finding of the area that no level place stands for."""
+    """Return a finding of the area that no level position stands for."""
     a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - level.area.sum())
     if area < SMALLEST_LEFTOVER:
@@ -374,7 +376,8 @@ def _runs(
     planes: _Planes, step: float, past: float, has_contact: HasContact, progress: Progress
 ) -> tuple[Ints, Floats]:
     """Return the plane (k,) and from where to where (k, 2) along it the cutter touches the area, one run after the other; it is
-    looked for on places a step apart, and no farther than `past` mm beyond the area's tips."""
+    looked for on positions a step apart, and no farther than `past` mm beyond the area's tips."""
+    # Sample the planes at even steps, then bisect each change between contact and none.
     before = math.ceil(past / step) + 1
     count = (
         np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 1 + 2 * before
@@ -401,7 +404,7 @@ def _runs(
 
 
 def _joined(plane: Ints, runs: Floats, overlap: Floats, gap: float) -> tuple[Ints, Floats]:
-    """Return runs (k, 2) with overlaps (k, 2) at their ends, and as one where the way between two is no longer than a gap. One that stays
+    """Return runs (k, 2) with overlaps (k, 2) at their ends, and as one where the path between two is no longer than a gap. One that stays
     shorter than any move is left out: it only touches a corner of the area."""
     runs = runs + overlap * np.array([-1.0, 1.0])
     begins = np.append(True, (plane[1:] != plane[:-1]) | (runs[1:, 0] - runs[:-1, 1] > gap))[

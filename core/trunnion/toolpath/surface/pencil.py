@@ -1,8 +1,8 @@
 """Finishing valleys: passes along the lines where the cutter touches two faces at once, and beside them where a larger one left material.
 
-Over a grid of drops the place that is touched moves little from point to point, but jumps where the cutter rolls from one side of a valley
-to the other. The lines through these jumps are the valleys (pencil lines); where an earlier cutter was larger it stood higher in them, and
-passes are laid beside the lines as far as it did.
+Over a grid of drops the position that is touched moves little from point to point, but jumps where the cutter rolls from one side of a
+valley to the other. The lines through these jumps are the valleys (pencil lines); where an earlier cutter was larger it stood higher in
+them, and passes are laid beside the lines as far as it did.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ CELL, FINEST, COARSEST = 0.1, 0.05, 0.5
 MARGIN = 3
 """Cells round the area's tips that are looked at."""
 HALVINGS = 14
-"""Times the distance between two places on both sides of a valley is halved."""
+"""Times the distance between two positions on both sides of a valley is halved."""
 JUMP = 2.0
-"""Cells that touched places on both sides of a valley are apart at least, beyond what a turn of the face explains."""
+"""Cells that touched positions on both sides of a valley are apart at least, beyond what a turn of the face explains."""
 MOST_SIDES = 200
 """Passes beside a valley at most."""
 SHORTEST = 0.5
@@ -170,7 +170,7 @@ class _Ground:
     lowest: float
 
     def contacts(self, plan: Floats, progress: Progress) -> tuple[Floats, Bools, Floats]:
-        """Return over plan points (n, 2) how high the tip stands, whether it touches the area, and where it touches (n, 3)."""
+        """Return over plan points (n, 2) how high the tip is, whether it touches the area, and where it touches (n, 3)."""
         z, facet, contact = self.drive.skin.drop.contacts(plan, self.pieces, self.lowest, progress)
         return (
             z,
@@ -192,16 +192,18 @@ def _valleys(
     tips: Floats, cell: float, ground: _Ground, angle: float, progress: Progress
 ) -> list[Floats]:
     """Return the valleys (k, 2) near tips (n, 3), in plan: what the cutter touches jumps across them."""
+    # Jumps of the contact along edges of a grid of drops mark a valley.
     grid = grid_around(tips, cell, MARGIN)
     z, on_area, contact = ground.contacts(grid.points[:, :2], progress.part(0.0, 0.5))
     ends, side = edges_of(grid.triangles, len(grid.points))
     a, b = ends.T
     apart = np.linalg.norm(contact[a] - contact[b], axis=1)
-    # Seen from the cutter the touched places of a valley are turned from each other; a face that bends moves them by less.
+    # Seen from the cutter the touched positions of a valley are turned from each other; a face that bends moves them by less.
     reach = np.column_stack([grid.points[:, :2], z + ground.pieces[-1, 4]])
     turned = _angle(reach[a] - contact[a], reach[b] - contact[b]) >= angle
     jumps = turned & (apart > JUMP * cell) & (on_area[a] | on_area[b]) & np.isfinite(apart)
     rows = np.flatnonzero(jumps)
+    # Bisect each jumping edge to where the contact changes sides.
     near, far = grid.points[a[rows], :2].copy(), grid.points[b[rows], :2].copy()
     for k in range(HALVINGS):
         middle = 0.5 * (near + far)
@@ -214,6 +216,7 @@ def _valleys(
         near, far = np.where(stays[:, None], middle, near), np.where(stays[:, None], far, middle)
     position = np.full((len(ends), 2), np.nan)
     position[rows] = 0.5 * (near + far)
+    # Join jumps across triangles with two of them: every triangle passes a line on, or ends it.
     both = jumps[side].sum(axis=1) == 2
     pairs = np.sort(np.where(jumps[side[both]], side[both], -1), axis=1)[:, 1:]
     return [position[line] for line in _chained(pairs)]

@@ -1,6 +1,6 @@
 """Point milling: a cutter led along passes of contacts, its axis leaning to a field and out of the way of everything.
 
-Contacts come from flow lines or passes of constant scallop, axes from `lean`; where the cutter stands follows from its form. Blocks are as
+Contacts come from flow lines or passes of constant scallop, axes from `lean`; where the cutter is follows from its form. Blocks are as
 long as the cutter, carried straight from tip to tip while its axis turns evenly, stays within the chord error of the faces, on either side.
 """
 
@@ -55,12 +55,12 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import trimmed
 
 SHARES = (0.25, 0.5, 0.75)
-"""Where on a block its chord error is looked at, beside the contacts on its way."""
+"""Where on a block its chord error is looked at, beside the contacts on its path."""
 HALVINGS = 12
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
 STOCK_SHARE, LEAST_STOCK = 2.0, 1.0
-"""How much material neck, shank and holder are kept clear of where there is room: times the depth of cut, and mm at least. Earlier cutters
+"""How much material neck, shank and holder are kept clear of where there is space: times the depth of cut, and mm at least. Earlier cutters
 leave more in corners than on faces."""
 OVERLAP = 0.25
 """Of an earlier cutter's radius: how far what it left is cut beyond its end."""
@@ -74,7 +74,7 @@ SMALLEST_LEFTOVER = 0.5
 
 @settings("surface.point")
 class PointSettings:
-    """How the tool leans, how its axis may turn, and how finely the way is cut."""
+    """How the tool leans, how its axis may turn, and how finely the path is cut."""
 
     pattern: str = setting(
         "flow",
@@ -176,7 +176,7 @@ class PointSettings:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class PointMilledPasses:
-    """Passes of a leaning cutter, the stretches of the contact ways that had to be left, and their share of the ways."""
+    """Passes of a leaning cutter, the stretches of the contact lines that had to be left, and their share of the paths."""
 
     passes: tuple[Pass, ...]
     rest: tuple[Contacts, ...]
@@ -233,7 +233,7 @@ def point(
                     ),
                 )
             )
-    # Clear of what still stands beside the faces, and where no lean is, clear of the part itself.
+    # Clear of the material that remains beside the faces, and where no lean is, clear of the part itself.
     wide = drive.query_for(thickened(tool, max(STOCK_SHARE * data.depth, LEAST_STOCK)))
     done = milled(
         contact_lines,
@@ -278,7 +278,7 @@ def point(
 def _contact_lines(
     drive: SurfaceDrive, ball: Tool, settings: PointSettings, progress: Progress
 ) -> tuple[tuple[Contacts, ...], tuple[Finding, ...]]:
-    """Return the ways of contacts that the pattern asks for, or those of constant scallop where flow lines don't suit the area, and then
+    """Return the lines of contacts that the pattern requests, or those of constant scallop where flow lines don't suit the area, and then
     a finding that says so."""
     pattern_findings: tuple[Finding, ...] = ()
     if settings.pattern == "flow":
@@ -320,6 +320,7 @@ def milled(
     """
     if not contact_lines:
         return PointMilledPasses(passes=(), rest=(), remaining=0.0)
+    # Axes first, then the poses along them; moves that touch something go back to the search (`met`) until TRIES are over.
     search = AxisSearch(contact_lines, field, tool, query, limits, allowance)
     axes_of_lines = search.found_axes(progress.part(0.0, 0.5))
     found: list[list[tuple[Floats, Pass]]] = [[] for _ in contact_lines]
@@ -338,6 +339,7 @@ def milled(
                 search.met(k, met)
         again = np.flatnonzero(search.dirty).tolist()
         axes_of_lines = search.found_axes(share) if again else axes_of_lines
+    # What no pass covers is the rest, in rows of the contacts: left to a thinner tool or reported.
     gaps = [
         _gaps(
             len(contacts) - 1.0,
@@ -396,13 +398,14 @@ def rest_of(
 def located(
     contacts: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
 ) -> tuple[Floats, Pass]:
-    """Return where a cutter stands along a run of a contact pass: the places (k,) of the way and the pass itself."""
+    """Return where a cutter is along a run of a contact pass: the positions (k,) of the path and the pass itself."""
     radius, feed = max(tool.corner_radius, 0.25 * tool.radius), contacts.feed
     travel = contacts.travel(radius)
     position = run.position
     rows = np.arange(len(contacts), dtype=np.float64)
     rows = rows[(rows > position[0]) & (rows < position[-1])]
     normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
+    # Halve: off is the distance between the straight block and the contact's tip, along the face's normal.
     for _ in range(HALVINGS):
         share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
         probe = np.concatenate([rows, share])
@@ -470,7 +473,7 @@ def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
 
 
 def field_of(settings: PointSettings, frame: Frame) -> AxisField:
-    """Return the axis field that settings ask for; places and directions are given in the part's coordinates."""
+    """Return the axis field that settings ask for; positions and directions are given in the part's coordinates."""
     numbers = _numbers(settings.axis_from)
     if settings.axis == "normal":
         return leaning(math.radians(settings.lead), math.radians(settings.tilt))
@@ -535,7 +538,7 @@ def _linked(
 
 
 def _low(path: Toolpath, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
-    """Say how far the leaning tool comes down beside the blank: no table is in the proof."""
+    """Return how far the leaning tool comes down beside the blank: no table is in the proof."""
     nose = path.position + tool.gauge_length * path.axis
     reach = np.sqrt(np.maximum(1.0 - path.axis[:, 2] ** 2, 0.0)) * tool.holder.radius
     deep = float(drive.low[2] - (nose[:, 2] - reach).min(initial=np.inf))
@@ -561,7 +564,7 @@ def _numbers(text: str) -> list[float]:
 def _poses_at(
     contacts: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, position: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Return the normals, axes and tips (k, 3) at places (k,) of a run."""
+    """Return the normals, axes and tips (k, 3) at positions (k,) of a run."""
     point, normal = between(contacts.point, contacts.normal, feed, position)
     axis = run.at(position)
     return normal, axis, tip_at(tool, point + allowance * normal, normal, axis)
@@ -570,7 +573,7 @@ def _poses_at(
 def _cut(
     runs: Sequence[tuple[Floats, Pass]], query: ClearanceQuery | None
 ) -> tuple[list[tuple[Floats, Pass]], Floats]:
-    """Return the stretches of runs whose moves are clear, and the places where a move is not."""
+    """Return the stretches of runs whose moves are clear, and the positions where a move is not."""
     if query is None:
         return list(runs), np.zeros(0)
     pieces, met = [], [np.zeros(0)]
@@ -588,7 +591,7 @@ def _stretches(clear: Bools) -> list[slice]:
 
 
 def _gaps(end: float, done: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the stretches between places 0 and `end` that lie in none of those that are done."""
+    """Return the stretches between positions 0 and `end` that lie in none of those that are done."""
     found, here = [], 0.0
     for a, b in [*sorted(done), (end, end)]:
         if a > here + tolerance.COINCIDENT:
@@ -598,7 +601,7 @@ def _gaps(end: float, done: Sequence[tuple[float, float]]) -> list[tuple[float, 
 
 
 def _run(contacts: Contacts, start: float, end: float) -> float:
-    """Return the length in mm of the contact way from a place to another."""
+    """Return the length in mm of the contact line from a position to another."""
     length = contacts.travel(0.0)
     return float(np.diff(np.interp([start, end], np.arange(len(contacts)), length))[0])
 

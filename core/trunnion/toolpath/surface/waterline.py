@@ -1,8 +1,8 @@
 """Finishing steep faces and upright walls level by level, the tip at one height all round.
 
-At a height the cutter is blocked where a drop would stand higher: the rim of that area is the pass. It is found on a grid of drops, put
+At a height the cutter is blocked where a drop would be higher: the rim of that area is the pass. It is found on a grid of drops, put
 exactly on the grid's lines and then between them by halving, always on the free side, and cut where the cutter touches the area. From a
-blocked place the rim is no nearer than where the cutter, at its height, gets past what a drop touches: few such steps come to it.
+blocked position the rim is no nearer than where the cutter, at its height, gets past what a drop touches: few such steps come to it.
 """
 
 from __future__ import annotations
@@ -51,12 +51,12 @@ STEPS, DIRECT = 40, 2
 """Of a search, which mostly ends after two; and after how many every other one is longer."""
 HALVINGS = 16
 SEEN, THINNED = 0.25, 0.4
-"""Shares of the chord error: how far the rim may be from the middle of a chord, and a place that is taken out from its chord."""
+"""Shares of the chord error: how far the rim may be from the middle of a chord, and a position that is taken out from its chord."""
 INSIDE = (0.25, 8.0, 0.75, 2.0)
 """How far inside of where the rim is expected beside a chord its search begins: near first, in what a chord's middle is expected off it;
 then in chord errors and in the chord's length, as a corner needs."""
 BELOW_TOP = 0.1
-"""Of a step: how far the last level lies below the highest place."""
+"""Of a step: how far the last level lies below the highest position."""
 UPWARD = -math.sin(tolerance.ANGLE)
 """The least part along z of normals of upright walls."""
 NEARBY, ROUGHLY = 1.0, 2.5
@@ -188,7 +188,7 @@ def waterline(
 
 
 def _unreached_findings(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
-    """Return a finding of the area that no steep place stands for."""
+    """Return a finding of the area that no steep position stands for."""
     a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - steep.area.sum())
     if area < SMALLEST_LEFTOVER:
@@ -224,7 +224,7 @@ def _feet(slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progre
 
 
 def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
-    """Return the heights of the tip (p,) upwards, from the lowest place that is touched; `feet` is how low the tip comes (m,)."""
+    """Return the heights of the tip (p,) upwards, from the lowest position that is touched; `feet` is how low the tip comes (m,)."""
     low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
     spacing = np.full(len(low), step) if step > 0.0 else level_spacing(slopes, tool, height)
     spacing = np.minimum(
@@ -247,7 +247,7 @@ def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: 
 
 
 def _without_near(feet: Floats, levels: Floats, least: float) -> list[float]:
-    """Return heights of feet, upwards, that have no level near above them: none nearer to each other than is asked for."""
+    """Return heights of feet, upwards, that have no level near above them: none nearer to each other than the setting."""
     found: list[float] = []
     for z in np.unique(feet).tolist():
         if (not found or z > found[-1] + least) and not (
@@ -267,14 +267,15 @@ class _Blocked:
     progress: Progress
 
     def heights(self, plan: Floats) -> Floats:
-        """Return how high the tip stands over plan points (n, 2)."""
+        """Return how high the tip is over plan points (n, 2)."""
         return self.drive.skin.drop.drop(plan, self.pieces, self.lowest, self.progress)
 
     def rim(
         self, start: Floats, direction: Floats, z: Floats, most: Floats
     ) -> tuple[Floats, Bools]:
-        """Return how far (n,) the rim of what is blocked is from blocked plan points (n, 2) along unit ways (n, 2): as far as the free
-        side, no more than `CLOSE` from it. And say whether it is there, no farther than `most` (n,); from a free place it isn't."""
+        """Return how far (n,) the rim of what is blocked is from blocked plan points (n, 2) along unit directions (n, 2): as far as the
+        free side, no more than `CLOSE` from it. Also return whether it is there, no farther than `most` (n,); from a free place it
+        isn't."""
         low, high = np.zeros(len(z)), np.full(len(z), np.inf)
         at, rows = low.copy(), np.arange(len(z))
         for k in range(STEPS):
@@ -308,7 +309,7 @@ class _Blocked:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Loop:
-    """A direction (k, 2) in plan at a height, the number of its level counted upwards; what is closed ends where it begins."""
+    """A polyline (k, 2) in plan at a height, the number of its level counted upwards; what is closed ends where it begins."""
 
     plan: Floats
     z: float
@@ -325,6 +326,7 @@ def _loops(
     progress: Progress,
 ) -> list[_Loop]:
     """Return the passes where the cutter touches the area, lowest first, the material on their right."""
+    # Drop cutter on a grid: the level lines of its heights are the waterlines, to a cell.
     cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
     blocked = _Blocked(
         drive=drive,
@@ -341,6 +343,7 @@ def _loops(
     numbers = np.concatenate([[-0.5], np.arange(len(levels)), [len(levels) - 0.5]])
     near, radius = cKDTree(tips), tool.radius + drive.allowance
     found: list[tuple[SheetLine, Ints, bool]] = []
+    # March the level lines; `numbers` maps heights so that all levels are whole numbers of one field.
     for line in whole_levels(grid, np.interp(heights, knots, numbers)):
         progress.check()
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
@@ -358,6 +361,7 @@ def _loops(
     over = np.repeat(
         [levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found]
     )
+    # Exact crossings: along each cut edge of the grid, from the blocked end to the rim (`_Blocked.rim`).
     ends = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
     high, low = grid.points[ends[:, 0], :2], grid.points[ends[:, 1], :2]
     side = np.hypot(*(low - high).T)
@@ -389,7 +393,7 @@ def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
 def _pieces(
     plan: Floats, near: Bools, closed: bool, overlap: float, radius: float
 ) -> list[tuple[Ints, bool]]:
-    """Return the rows of the pieces of a path (k, 2) that are near the area, roll round an edge of it, or are no farther along the way
+    """Return the rows of the pieces of a path (k, 2) that are near the area, roll round an edge of it, or are no farther along the path
     than an overlap from such, and whether each is closed."""
     rows = np.arange(len(plan))
     if not near.any():
@@ -415,8 +419,8 @@ def _pieces(
 
 
 def _rolls(plan: Floats, near: Bools, radius: float) -> Bools:
-    """Say of positions (k, 2) between two that are near the area whether the cutter rolls round an edge there: the way is as long as the
-    arc of its radius between both."""
+    """Return for positions (k, 2) between two that are near the area whether the cutter rolls round an edge there: the path is as long as
+    the arc of its radius between both."""
     out = np.zeros(len(plan), dtype=bool)
     rows = np.flatnonzero(near)
     run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(plan, axis=0).T))])
@@ -437,6 +441,7 @@ def _refined(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats
         np.repeat([loop.z for loop in loops], [len(loop.plan) for loop in loops]),
     )
     line = np.repeat(np.arange(len(loops)), [len(loop.plan) for loop in loops])
+    # Halve: off is where a smooth rim would be, from the turns at both ends; a chord is closed when its middle is found there.
     off = _bulges(plan, line)
     is_open = np.append(line[1:] == line[:-1], False)
     for _ in range(HALVINGS):
@@ -456,7 +461,7 @@ def _refined(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats
             for old, new in ((plan, middle), (z, z[rows]), (line, line[rows]), (off, off[rows]))
         )
         is_open = np.insert(is_open, rows + 1, is_open[rows])
-        # Beside a corner a chord that was never looked at may leave the way.
+        # Beside a corner a chord that was never looked at may leave the path.
         is_open |= np.abs(_bulges(plan, line)) > SEEN * chord
         is_open[:-1] &= (line[1:] == line[:-1]) & (np.hypot(*np.diff(plan, axis=0).T) > chord)
     kept = thinned(plan, line, THINNED * chord)
@@ -464,8 +469,8 @@ def _refined(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats
 
 
 def _bulges(plan: Floats, line: Ints) -> Floats:
-    """Return how far to the left (n,) of the middle of the chord from each place (n, 2) of lines to the next a smooth way would be, as the
-    lines turn at both ends."""
+    """Return how far to the left (n,) of the middle of the chord from each position (n, 2) of lines to the next a smooth way would be, as
+    the lines turn at both ends."""
     chord = np.diff(plan, axis=0)
     length = np.hypot(chord[:, 0], chord[:, 1])
     turn = chord[:-1, 0] * chord[1:, 1] - chord[:-1, 1] * chord[1:, 0]

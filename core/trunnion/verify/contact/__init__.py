@@ -120,7 +120,7 @@ class PartContact:
 
     def stopped(self, moves: Moves, allowed: float) -> Floats:
         """Return a position (n, 3) of part or fixtures, on it, where something of the tool of each move or pose is deeper than allowed, or
-        beside the deepest such place; NaN where there is none."""
+        beside the deepest such position; NaN where there is none."""
         position = np.full((len(moves), 3), np.nan)
         engines = self._engines(moves) + (
             [(self._fixtures, np.arange(len(moves)))] if self._fixtures else []
@@ -142,9 +142,9 @@ class PartContact:
         text: str = "",
         threads: int = 0,
     ) -> Bools:
-        """Return for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
+        """Return for k positions whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
 
-        Much quicker where most poses are stopped: `obstacles`, those of the k places, remembers by what, for the next tool too. The part
+        Much quicker where most poses are stopped: `obstacles`, those of the k positions, remembers by what, for the next tool too. The part
         must have no fixtures, and poses that lean need its facets.
         """
         if self._fixtures is not None:

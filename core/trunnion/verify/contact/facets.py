@@ -33,7 +33,7 @@ CHUNK = 100
 SHORT = 10.0
 """mm: a move so much longer than this counts as several."""
 BATCH = 16
-"""Places whose poses are tried between two looks at cancel: some tens of milliseconds when nothing is known of what is in the way."""
+"""Positions whose poses are tried between two looks at cancel: some tens of milliseconds when nothing is known of what is in the way."""
 LEAF = 4
 """Most triangles of a leaf."""
 
@@ -134,9 +134,9 @@ class FacetContact:
         text: str = "",
         threads: int = 0,
     ) -> Bools:
-        """Return for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
+        """Return for k positions whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
 
-        `obstacles` are the places'; what stops a pose is added to them.
+        `obstacles` are the positions'; what stops a pose is added to them.
         """
         tree, bodies, found = self._ready(progress), bodies_of_one(tool), np.zeros(len(tips), bool)
 

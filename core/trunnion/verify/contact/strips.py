@@ -1,7 +1,7 @@
 """Closed forms: a body of revolution that stands upright, against faces that are strips and level regions (`part/shape/surfaces.py`).
 
 Closed forms in plan and a bounded search over the profile (`kernels/contact/strips.py`): a reported depth is attained, and the true one is
-at most `tolerance.CONTACT_BOUND` deeper. A move along its own axis counts as one body, swept from its lowest to its highest place.
+at most `tolerance.CONTACT_BOUND` deeper. A move along its own axis counts as one body, swept from its lowest to its highest position.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Accessibility: the points of the part that some cutter of the catalogue reaches, upright from above or tilted on rotary axes.
 
-A place that nothing reaches is settled only when every pose of every cutter is stopped. What stopped one stops most of the others, so each
-place remembers its obstacles (`contact/obstacles.py`), and few poses are held against the whole part.
+A position that nothing reaches is settled only when every pose of every cutter is stopped. What stopped one stops most of the others, so
+each position remembers its obstacles (`contact/obstacles.py`), and few poses are held against the whole part.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ MOST_TRIED = 3000
 MOST_LEANING = 200
 """The same for leaning cutters, which are tried in many more poses."""
 AROUND = 8
-"""Directions in which a flat end stands aside from a place on a level face."""
+"""Directions in which a flat end stands aside from a position on a level face."""
 ASIDE = (1.0, 0.5)
 """Shares of its flat end's radius by which it does."""
 

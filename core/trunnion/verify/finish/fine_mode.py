@@ -39,7 +39,7 @@ ROUNDS = 40
 """Times that cells are quartered at most: to nothing."""
 ARRAYS = tuple(ExactPoints.__slots__)
 CLIMB, CLIMBS = 7, 12
-"""Places along each side of a grid that closes in on a ridge, and how often: a cell's side is then known to a hundred-thousandth."""
+"""Positions along each side of a grid that closes in on a ridge, and how often: a cell's side is then known to a hundred-thousandth."""
 LIFTS = 3
 """Times a surface is lifted to the height of its ridges: the second one changes nothing but the bound."""
 
@@ -130,7 +130,7 @@ def fine_measure(
 ) -> FineMap:
     """Return scallop, gouge and steps on faces (within the box from `low` to `high` (3,) when given), all in the frame of the moves.
 
-    Cells begin about `spacing` mm wide. `window` mm is how far beside a seam the lowest places of both sides are compared: as far as two
+    Cells begin about `spacing` mm wide. `window` mm is how far beside a seam the lowest positions of both sides are compared: as far as two
     passes are apart at least. Raises `BadInput` when there is nothing to measure, `OutOfMemory` when the patch is too large.
     """
     flutes = flutes_of(moves)
@@ -421,7 +421,7 @@ class _Patch:
 def _within(face: FineFace, cells: _Cells, signs: Floats) -> Bools:
     """Return which uv (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
 
-    All cells of a face are of one size, and neighbours share corners: each place is evaluated once.
+    All cells of a face are of one size, and neighbours share corners: each position is evaluated once.
     """
     if not len(cells):
         return np.zeros((0, len(signs)), bool)
@@ -438,7 +438,7 @@ def _some(at: ExactPoints, rows: Bools) -> ExactPoints:
 
 
 class _Best:
-    """The most (sign 1) or least (sign -1) found, with its place on its face, and the half sides of its cell."""
+    """The most (sign 1) or least (sign -1) found, with its position on its face, and the half sides of its cell."""
 
     def __init__(self, sign: float) -> None:
         self.value, self.position, self.move, self.sign = (
@@ -464,7 +464,7 @@ class _Best:
         return True
 
     def take(self, residual: Floats, nearest: Ints, uv: Floats, point: Floats) -> bool:
-        """Take what is residual (k,) at places uv (k, 2) of one face into account."""
+        """Take what is residual (k,) at positions uv (k, 2) of one face into account."""
         if not len(residual):
             return False
         row = int(np.argmax(self.sign * residual))

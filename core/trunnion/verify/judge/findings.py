@@ -1,4 +1,5 @@
-"""What is reported of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, place and depth."""
+"""What is reported of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, position and
+depth."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 
 MOST_FINDINGS = 5
-"""Places that one operation's finding list names of each kind; the worst come first."""
+"""Positions that one operation's finding list names of each kind; the worst come first."""
 
 
 def setup_findings(proof: SetupProof, tags: Ints, settings: ProofSettings) -> list[Finding]:

@@ -387,7 +387,7 @@ def node_distance_bound(
 ) -> float:
     """Return a lower bound (mm) of the signed distance of a point to any pose below a node.
 
-    f(node's pose) - translation - chord of angle x distance from the pose's place: a turn of the
+    f(node's pose) - translation - chord of angle x distance from the pose's position: a turn of the
     axis moves the point by at most that chord times its distance.
     """
     pose, tool = tree.pose, tree.link[n, 4]
@@ -494,7 +494,7 @@ def span_poses(
         px, py, pz = w[PX] + t * w[DX], w[PY] + t * w[DY], w[PZ] + t * w[DZ]
         length = math.sqrt(w[DX] * w[DX] + w[DY] * w[DY] + w[DZ] * w[DZ]) * share
         if w[RADIUS] > 0.0:
-            # Seen from its own tip the origin is at minus the tip's place.
+            # Seen from its own tip the origin is at minus the tip's position.
             ox, oy, oz = point_in_tool_frame(w, 0.0, 0.0, 0.0, t)
             nx, ny, nz = ay * w[EZ] - az * w[EY], az * w[EX] - ax * w[EZ], ax * w[EY] - ay * w[EX]
             px, py, pz = (

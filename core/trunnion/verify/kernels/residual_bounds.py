@@ -327,7 +327,7 @@ def _mean_of_two(p: Floats, q: Floats) -> float:
 
 @njit(cache=True, nogil=True)
 def _nearest_body(flutes: Flutes, tool: int, w: Floats, position: Floats, share: float) -> int:
-    """Return which of a tool's convex bodies a place lies deepest in, or is nearest to, in a pose.
+    """Return which of a tool's convex bodies a position lies deepest in, or is nearest to, in a pose.
 
     The convexity that the bound from above needs holds for one body; its distance is at least the
     union's.

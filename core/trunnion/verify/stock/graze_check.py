@@ -25,7 +25,7 @@ FINE = 0.05
 MOST_FINE = 10
 """Most of them along a side of a cell."""
 SHARES = 17
-"""Places of a sloped rapid at which it is held against a column."""
+"""Positions of a sloped rapid at which it is held against a column."""
 
 
 def rays_in_cell(pitch: float) -> int:
@@ -36,7 +36,7 @@ def rays_in_cell(pitch: float) -> int:
 def confirm_grazed(
     stock: Stock, found: Passed, frame: Frame, sweep: Sweep, progress: Progress
 ) -> None:
-    """Note the rapids that are in material at a place between rays, where no cut before has been."""
+    """Note the rapids that are in material at a position between rays, where no cut before has been."""
     if not found.grazed:
         return
     moves, positions = (

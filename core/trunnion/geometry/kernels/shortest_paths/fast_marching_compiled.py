@@ -1,6 +1,6 @@
 """The loops of `kernels.shortest_paths.fast_marching` compiled, with an indexed binary heap.
 
-The heap holds each waiting point once and knows its place, so a lowered time moves the entry up
+The heap holds each waiting point once and knows its position, so a lowered time moves the entry up
 instead of adding another. Equal times are ordered by the point's row: the same result every time.
 """
 

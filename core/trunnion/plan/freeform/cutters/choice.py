@@ -57,7 +57,7 @@ def cutter_for(
     wanted: Tool | None,
     progress: Progress,
 ) -> AreaCutters:
-    """Return the largest cutter that reaches at least a share of what any one reaches of places, the shortest of its size; or the one
+    """Return the largest cutter that reaches at least a share of what any one reaches of samples, the shortest of its size; or the one
     that is `wanted`.
 
     What it misses goes to the largest smaller one that reaches nearly all any does of that.

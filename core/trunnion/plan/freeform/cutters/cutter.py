@@ -59,7 +59,7 @@ def touching(tool: Tool, angle: Floats) -> tuple[Floats, Floats]:
     """Return where on its profile a cutter touches a plane whose outward normal leans by angles (k,) rad from the cutter's axis.
 
     Distance from the axis (k,) and height above the tip (k,), mm: the contact lies on the side the normal points away from. A flat end
-    that stands on a level plane touches with its rim.
+    that is on a level plane touches with its rim.
     """
     angle = np.asarray(angle, dtype=np.float64)
     pieces = lower_side(tool)

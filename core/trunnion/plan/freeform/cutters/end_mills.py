@@ -58,7 +58,7 @@ class LandCutters:
     flanks: tuple[tuple[Region, float], ...]
 
     def finishes(self, samples: AreaSamples) -> Bools:
-        """Say which samples (k,) lie on the foot of an upright side, which the end mills finish while they cut the land beside it."""
+        """Return which samples (k,) lie on the foot of an upright side, which the end mills finish while they cut the land beside it."""
         found = np.zeros(len(samples), dtype=bool)
         upright = np.abs(samples.normal[:, 2]) < VERTICAL
         for region, height in self.flanks:
@@ -165,7 +165,7 @@ def _cutters_of(reach: _Reach, tool: Tool, rest: Tool | None) -> LandCutters:
 
 
 def _may_cover(part_above: PartAbove, land: Land, tools: Sequence[Tool]) -> bool:
-    """Say whether the slimmest end mill would cover enough of a land with nothing above its flutes: others cover no more."""
+    """Return whether the slimmest end mill would cover enough of a land with nothing above its flutes: others cover no more."""
     slimmest = min(tools, key=lambda t: (t.diameter, t.corner_radius))
     return _is_most(
         covered(land, part_above.space.around().minus(part_above.over(land.z + SKIM)), slimmest),
@@ -229,7 +229,7 @@ def _near(tools: list[Tool]) -> list[Tool]:
 
 
 def _is_worth(part_above: PartAbove, land: Land, ball: float) -> bool:
-    """Say whether a land is large enough for an end mill, or a ball would leave too much of it beside what stands there."""
+    """Return whether a land is large enough for an end mill, or a ball would leave too much of it beside what is there."""
     if land.region.area >= WORTH:
         return True
     axis_region = part_above.space.around().minus(part_above.over(land.z + ball)).offset(-ball)

@@ -22,7 +22,7 @@ TIGHT = 8.0
 """mm: a hollow with a smaller radius bears only cutters smaller than those for what lies around it."""
 LOCAL, REMAINING = "local", "remaining"
 END_MILL = 3.0
-"""mm: radius of a cutter that must have room down to the foot of an upright wall for it to stand free."""
+"""mm: radius of a cutter that must have space down to the foot of an upright wall for it to stand free."""
 VERTICAL = np.sin(np.radians(0.5))
 """Cosine of the angle from the tool's axis from which on a normal counts as level: the wall is upright then."""
 
@@ -124,7 +124,7 @@ def on_outline(
     tags: Collection[int],
     progress: Progress = NO_PROGRESS,
 ) -> tuple[int, ...]:
-    """Return the upright faces that nothing of the part stands in front of at their height: an end mill beside them is out in the free.
+    """Return the upright faces that nothing of the part is in front of at their height: an end mill beside them is out in the free.
 
     A face that runs into another one at its foot, or meets one that comes out of it, doesn't stand free.
     """

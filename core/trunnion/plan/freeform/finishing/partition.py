@@ -15,14 +15,14 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.progress import NO_PROGRESS, Progress
 
 FILLED = 1.0
-"""Of the width around places: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is
+"""Of the width around positions: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is
 rounder."""
 FINENESS = 0.5
 """Of that width: the longest edge of the triangles that the rim is drawn through."""
 NEAR_END = 0.05
 """Share of an edge: how near its ends the rim crosses it at most."""
 BETWEEN = 0.25
-"""Of a triangle's longest side: how far a place of its sides is from the nearest that is asked."""
+"""Of a triangle's longest side: how far a position of its sides is from the nearest that is queried."""
 PART = 1_000_000
 """Added to a face's tag for a part of it: more than any part has faces."""
 
@@ -37,9 +37,9 @@ def parted_near(
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what of faces lies within `around` mm of certain places given tags of its own, and those tags.
 
-    `over` says for places (p, 3) with outward unit normals (p, 3) how much (p,) there is of what it is about: places above nothing count.
-    With `longest` mm the faces as a whole get triangles with such edges: what is not near hangs together as it did. Without it only what
-    is near gets finer ones, and triangles beside it no longer share all their corners with it.
+    `over` says for positions (p, 3) with outward unit normals (p, 3) how much (p,) there is of what it is about: positions above nothing
+    count. With `longest` mm the faces as a whole get triangles with such edges: what is not near hangs together as it did. Without it only
+    what is near gets finer ones, and triangles beside it no longer share all their corners with it.
     """
     rows = np.flatnonzero(skin.of(tags))
     position, normal, of = progress.aside(lambda _: _positions(skin, rows), "Parting the faces")
@@ -109,7 +109,8 @@ def _distance(sheet: Sheet, value: Floats) -> Floats:
 
 
 def _crossing(value: Floats, ends: Ints) -> Floats:
-    """Return the share of the way along edges (k, 2) where values (v,) of different signs are nothing; the middle where one is infinite."""
+    """Return the share of the distance along edges (k, 2) where values (v,) of different signs are nothing; the middle where one is
+    infinite."""
     a, b = value[ends].T
     even = np.isfinite(a) & np.isfinite(b)
     return np.where(even, np.divide(a, a - b, out=np.full(len(a), 0.5), where=even & (a != b)), 0.5)
@@ -134,8 +135,8 @@ def _length(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
 
 
 def _positions(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
-    """Return places (p, 3) on triangles, the faces' unit normals there, and which of them (k, 7) are the corners, the middles of the sides
-    and the middle of each triangle: what a cutter leaves beside a rim may be narrower than a triangle."""
+    """Return positions (p, 3) on triangles, the faces' unit normals there, and which of them (k, 7) are the corners, the middles of the
+    sides and the middle of each triangle: what a cutter leaves beside a rim may be narrower than a triangle."""
     used, corners = np.unique(skin.triangles[rows], return_inverse=True)
     corners = corners.reshape(-1, 3)
     ends, side = edges_of(corners, len(used))
@@ -149,7 +150,7 @@ def _positions(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
 
 
 def _with_those_near(position: Floats, of: Ints, certain: Bools, around: float) -> Bools:
-    """Say which triangles, with places (k, 7) of all (p, 3), come as near as that to a certain position (p,): wide ones may between
+    """Return which triangles, with positions (k, 7) of all (p, 3), come as near as that to a certain position (p,): wide ones may between
     theirs."""
     if not certain.any():
         return np.zeros(len(of), dtype=bool)

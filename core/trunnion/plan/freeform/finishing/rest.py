@@ -17,18 +17,18 @@ from trunnion.plan.freeform.finishing.partition import parted_near
 from trunnion.progress import NO_PROGRESS, Progress
 
 LIFTED = 0.5 * tolerance.GOUGE
-"""mm: a cutter that other faces lift by no more than this still reaches a place."""
+"""mm: a cutter that other faces lift by no more than this still reaches a position."""
 UNSEEN = 0.1
-"""Of the scallop height: a cutter that is lifted by no more than this finishes a place."""
+"""Of the scallop height: a cutter that is lifted by no more than this finishes a position."""
 AROUND = 0.3
 """mm at least that an area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
 MET, MOST = 1.5, 20_000
-"""mm: the longest edge of triangles that are asked whether shank or holder meet something; and how many such squares there are at most."""
+"""mm: the longest edge of triangles that are tested for shank or holder meeting something; and how many such squares there are at most."""
 QUERY_SPACING, DOUBT = 1.0, 1.5
-"""mm: one place of each cube of this width, and of each side that faces turn there, is asked first; and by how much wider and lower shank
-and holder are taken then, for its neighbours' sake."""
+"""mm: one position of each cube of this width, and of each side that faces turn there, is queried first; and by how much wider and lower
+shank and holder are taken then, for its neighbours' sake."""
 HOLDER_CLEARANCE = 0.2
-"""mm that shank and holder keep from walls beside them."""
+"""mm that shank and holder keep from adjacent walls."""
 
 
 def remaining_of(
@@ -68,7 +68,7 @@ def without_met(
     progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin and the tags of what of faces an upright tool finishes without its shank or holder meeting the part: all of them
-    where these meet nothing, else not what lies around such places, twice as far as passes are apart at a scallop height in mm."""
+    where these meet nothing, else not what lies around such positions, twice as far as passes are apart at a scallop height in mm."""
     wider = [
         (z0, max(r0, r1))
         for z0, r0, _, r1 in tool.profile()
@@ -120,7 +120,7 @@ def without_met(
 def _drop(
     skin: Skin, position: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress
 ) -> tuple[Floats, Floats]:
-    """Return the tips (p, 3) of an upright cutter that touches at places (p, 3) with normals (p, 3), and the heights (p,) that the part
+    """Return the tips (p, 3) of an upright cutter that touches at positions (p, 3) with normals (p, 3), and the heights (p,) that the part
     lifts it to there."""
     at = position + 2.0 * skin.bound * normal
     tip = tip_at(tool, at, normal, np.tile([0.0, 0.0, 1.0], (len(at), 1)))

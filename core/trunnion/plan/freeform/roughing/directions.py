@@ -24,7 +24,7 @@ ROUND = 8
 WORTH = 0.1
 """Share of what is hidden that another direction must see to be worth its turn."""
 FACING = math.sin(math.radians(10.0))
-"""Cosine of the angle from a direction from which on a place looks along it rather than at it: such a one says not how deep to go."""
+"""Cosine of the angle from a direction from which on a position looks along it rather than at it: such a one says not how deep to go."""
 OFF = 0.3
 """mm: how far from the faces it is looked whether a cutter comes there."""
 PROBE = 6.0
@@ -48,7 +48,7 @@ def sides_for(
     clearance: float,
     progress: Progress,
 ) -> list[RoughingDirection]:
-    """Return the directions that see hidden places best, each the one that sees most of what those before it don't."""
+    """Return the directions that see hidden positions best, each the one that sees most of what those before it don't."""
     probe = max(
         (t for t in tools if t.diameter <= PROBE),
         key=lambda t: (t.diameter, t.reach, t.name),
@@ -75,7 +75,7 @@ def sides_for(
         facing.append(local.normal[:, 2] > FACING)
     found, remaining = [], np.ones(len(hidden), dtype=bool)
     for tilt in range(len(TILTS)):
-        # Level directions first: they leave most room for the spindle, and what they see lies in even layers.
+        # Level directions first: they leave most space for the spindle, and what they see lies in even layers.
         rows = [
             k
             for k, d in enumerate(directions)

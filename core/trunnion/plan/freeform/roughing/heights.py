@@ -1,6 +1,6 @@
-"""How high a part stands, seen along the tool: a map that is nowhere lower than the part with its allowance, and areas where it is low.
+"""How high a part is, seen along the tool: a map that is nowhere lower than the part with its allowance, and areas where it is low.
 
-Each place of a square grid knows the height of the part, thickened all round by an allowance, over a disc as wide as a cell's diagonal.
+Each position of a square grid knows the height of the part, thickened all round by an allowance, over a disc as wide as a cell's diagonal.
 So every corner of a cell is at least as high as the part anywhere in the cell, and where a cell is split by a height, one corner that lies
 below it is enough to know that the cell does.
 """
@@ -21,14 +21,14 @@ from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.progress import NO_PROGRESS, Progress
 
 MOST_SAMPLES = 60_000
-"""Places of a map: about a second of dropping; beyond, cells grow."""
+"""Positions of a map: about a second of dropping; beyond, cells grow."""
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a cell, anticlockwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class HeightMap:
-    """Heights (nx, ny) mm at the places `corner` + (i, j) `cell`."""
+    """Heights (nx, ny) mm at the positions `corner` + (i, j) `cell`."""
 
     height: Floats
     corner: Floats
@@ -43,7 +43,7 @@ class HeightMap:
         allowance: float,
         progress: Progress = NO_PROGRESS,
     ) -> HeightMap:
-        """Return the map of a surface over a box with corners (3,), which should hold it with room to spare; nothing is below `low`."""
+        """Return the map of a surface over a box with corners (3,), which should hold it with space to spare; nothing is below `low`."""
         size = high[:2] - low[:2]
         cell = cell_over(low, high, cell)
         count = np.ceil(size / cell).astype(int) + 1
@@ -68,7 +68,7 @@ def cell_over(low: Floats, high: Floats, cell: float) -> float:
 def wall_gap(cell: float, chord: float) -> float:
     """Return by how much, in mm and in the mean, the rims of `HeightMap.below` stay farther from upright walls than the map's allowance.
 
-    A place is low from a cell's diagonal off the wall on. The rim crosses the edge to a place that isn't, on either side of that
+    A position is low from a cell's diagonal off the wall on. The rim crosses the edge to a position that isn't, on either side of that
     distance by less than a cell, and straightening moves it off by the chord error. So no rim is farther off than twice this.
     """
     return math.sqrt(2.0) * cell + chord
@@ -122,7 +122,8 @@ def _runs(whole: Bools, corner: Floats, cell: float) -> list[shapely.Geometry]:
 def _slices(
     height: Floats, mixed: Bools, corner: Floats, cell: float, z: float
 ) -> list[shapely.Geometry]:
-    """Return what lies low of cells that are split: the corners below, and on the edges between the places where they cross the height."""
+    """Return what lies low of cells that are split: the corners below, and on the edges between the positions where they cross the
+    height."""
     i, j = np.nonzero(mixed)
     if not len(i):
         return []

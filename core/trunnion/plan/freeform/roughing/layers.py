@@ -1,4 +1,4 @@
-"""Plane drives of parts of curved surfaces: layers from how high the part stands, and outlines of upright walls from its sections."""
+"""Plane drives of parts of curved surfaces: layers from how high the part is, and outlines of upright walls from its sections."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ LEAST_STRAIGHT = 0.02
 LEVEL_AREA = 4.0
 """mm2: level faces together at a height at least this large end a layer on them."""
 WORTH = 0.2
-"""Of a layer: stock that stands no higher over it isn't worth a pass in it."""
+"""Of a layer: stock that is no higher over it isn't worth a pass in it."""
 RIM = 2.0
 """Cells of the stock that walls keep high though everything beside them is cut."""
 
@@ -85,9 +85,9 @@ def _mapped_box(space: SurfaceSpace, cell: float) -> tuple[Floats, Floats]:
 def _layers(
     operation: Operation, space: SurfaceSpace, stock: StockHeights, progress: Progress
 ) -> PlaneDrive:
-    """Return layers down to the operation's bottom: what stands over each that the part, its allowance all round, doesn't need.
+    """Return layers down to the operation's bottom: what is over each that the part, its allowance all round, doesn't need.
 
-    A layer that nothing stands over wants nothing.
+    A layer that nothing is over wants nothing.
     """
     allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
     cell = number(operation, CELL)
@@ -163,7 +163,7 @@ def level_faces(space: SurfaceSpace) -> list[float]:
 
 
 def _stock_over(stock: StockHeights, z: float, above: float) -> Region:
-    """Return where the stock stands over a layer by more than is worth nothing; rims beside walls, which are never certain, left out."""
+    """Return where the stock is over a layer by more than is worth nothing; rims beside walls, which are never certain, left out."""
     most = float(stock.heights.max())
     higher = stock.heights > z + WORTH * (above - z)
     if higher.all():
@@ -171,7 +171,7 @@ def _stock_over(stock: StockHeights, z: float, above: float) -> Region:
         return Region.rectangle(*low, *high)
     if not higher.any():
         return EMPTY_REGION
-    # Each cell of the stock as a place of a grid: low where it stands high.
+    # Each cell of the stock as a position of a grid: low where it stands high.
     grid = np.pad(np.where(higher, most - 1.0, most + 1.0), 1, constant_values=most + 1.0)
     found = region_below(grid, stock.corner - 0.5 * stock.cell, stock.cell, most, LEAST_STRAIGHT)
     return found.opened(RIM * stock.cell)

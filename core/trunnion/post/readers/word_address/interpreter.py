@@ -108,7 +108,7 @@ class Control:
             self.ended = True
 
     def check(self, block: Block) -> None:
-        """Refuse what can't be understood or stands in a wrong place."""
+        """Refuse what can't be understood or stands in a wrong position."""
         line, words, codes = block.line, block.words, block.codes
         if self.ended:
             raise BadInput(

@@ -1,4 +1,4 @@
-"""Stepovers as a metric of the faces: how many passes lie between two places.
+"""Stepovers as a metric of the faces: how many passes lie between two positions.
 
 A cutter and a face that touch leave between them a gap that opens with the square of the distance across the feed, by the sum of both
 curvatures (the face's + convex). So the stepover for a scallop height h is a length in the metric (I/R + II) / 8h of the faces, I and
@@ -37,13 +37,13 @@ JUMP = 1.25
 PAST = 0.28
 """Stepovers of the rounder side that its measure holds past a jump."""
 NEARBY = 4
-"""Places on jumps that are asked from each place of an edge."""
+"""Positions on jumps that are queried from each position of an edge."""
 SHARES = 8
-"""Places of an edge that are asked whether they are past a jump."""
+"""Positions of an edge that are tested for being past a jump."""
 CORNER = math.cos(math.radians(15.0))
 """Cosine of the least turn from one piece of a line to the next that is a corner."""
 ASIDE = 0.01
-"""Of the longest piece: how far straight moves may cut a way's bends along the face; neighbours are farther apart there by that."""
+"""Of the longest piece: how far straight moves may cut a path's bends along the face; neighbours are farther apart there by that."""
 
 
 def stepover_measure(tool: Tool, height: float) -> Measure:
@@ -72,7 +72,7 @@ def stepover_measure(tool: Tool, height: float) -> Measure:
 
 
 def _own_curvature(tool: Tool, direction: Floats, normal: Floats) -> Floats:
-    """Return the second fundamental form (e,) of ways (e, 3) on the cutter's own surface where it touches faces of normals (e, 3)."""
+    """Return the second fundamental form (e,) of paths (e, 3) on the cutter's own surface where it touches faces of normals (e, 3)."""
     square = (direction * direction).sum(axis=1)
     if tool.form == "ball":
         return np.asarray(square / tool.radius)
@@ -115,7 +115,7 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     slope, form = _forms(sheet, lengths[side])
 
     def along(triangle: Ints, direction: Floats) -> Floats:
-        """Return the square of the length of ways (k, 3) in triangles (k,)."""
+        """Return the square of the length of paths (k, 3) in triangles (k,)."""
         part = np.einsum("kij,kj->ki", slope[triangle], direction)
         return np.asarray(
             np.maximum(-(part * np.roll(part, -1, axis=1) * form[triangle]).sum(axis=1), 0.0)
@@ -183,7 +183,7 @@ def spread(
     point: Floats, normal: Floats, closed: bool, radius: float, chord: float, longest: float
 ) -> tuple[Floats, Floats]:
     """Return contacts (m, 3) with normals over the curved way through contacts (k, 3), at most `longest` mm apart, and so close that
-    straight moves between them, and between points a radius above them, leave the way by no more than a chord error, and along
+    straight moves between them, and between points a radius above them, leave the path by no more than a chord error, and along
     the face by no more than `ASIDE`. Corners stay."""
     size = np.linalg.norm(np.diff(point, axis=0), axis=1)
     kept = np.concatenate([[True], size > tolerance.SHORT_MOVE])

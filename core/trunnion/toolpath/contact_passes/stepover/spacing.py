@@ -22,7 +22,7 @@ FINENESS = 0.25
 """Of the nearest two passes' distance: width of the strips that distances are found for."""
 MOST_STRIPS = 200_000
 AIM = 0.95
-"""Of the scallop height: what planes are laid for where a face bends, since moves leave their way by a chord error there."""
+"""Of the scallop height: what planes are laid for where a face bends, since moves leave their path by a chord error there."""
 CLOSEST = 2.76
 """Heights: how near tips need to come at most. In a hollow whose radius is larger by e a tip goes e for each radian that its contact does;
 between passes d apart e (1 - cos(d / 2 e)) stays, which is no more than 0.3623 d for any e."""
@@ -41,7 +41,7 @@ class FacetSlopes:
     turns: Floats
 
     def some(self, which: Bools) -> FacetSlopes:
-        """Return some of the places."""
+        """Return some of the positions."""
         return FacetSlopes(**{f.name: getattr(self, f.name)[which] for f in fields(self)})
 
     def along(self, direction: Floats) -> tuple[Floats, Floats]:

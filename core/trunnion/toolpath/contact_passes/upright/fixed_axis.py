@@ -1,7 +1,7 @@
 """From contacts to the passes of an upright tool: put on its contacts, followed over the skin, and cut only where it touches the area.
 
-The tool's way in plan is that of its tips on the contacts; its height is that of a drop on the whole part, so whatever other face is in
-the way lifts it. Where it then touches nothing of the area any more, the pass is interrupted.
+The tool's path in plan is that of its tips on the contacts; its height is that of a drop on the whole part, so whatever other face is in
+the path lifts it. Where it then touches nothing of the area any more, the pass is interrupted.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def _runs(wanted: Bools, closed: bool) -> list[Ints]:
         return [np.arange(len(wanted))]
     rows = np.arange(len(wanted))
     if closed:
-        # Begin behind a place that isn't wanted, so that no run is torn.
+        # Begin behind a position that isn't wanted, so that no run is torn.
         first = int(np.flatnonzero(~wanted[:-1])[0]) if not wanted[:-1].all() else 0
         rows = np.append(np.roll(rows[:-1], -first), first)
     ends = np.flatnonzero(np.diff(wanted[rows].astype(np.int8), prepend=0, append=0))

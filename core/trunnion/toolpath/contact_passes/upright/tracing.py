@@ -1,6 +1,6 @@
 """Following a dropped cutter along lines in plan: where its tip goes, in as few straight moves as a chord error allows.
 
-All lines are worked on together. Places are put in between (halving) until every chord's middle is on the way and no chord climbs so
+All lines are worked on together. Positions are put in between (halving) until every chord's middle is on the path and no chord climbs so
 differently from its neighbours that a kink could hide in it. Then those that aren't needed are taken out (Douglas and Peucker), which keeps
 kinks since they lie farthest from any chord.
 """
@@ -18,12 +18,12 @@ from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.progress import NO_PROGRESS, Progress
 
 UNSEEN = 0.5
-"""Of the chord error: what stands up between two places of a way, too narrow to be seen from either, is at most so high."""
+"""Of the chord error: what stands up between two positions of a path, too narrow to be seen from either, is at most so high."""
 WIDEST = 0.06
-"""Of the cutter's radius: places of a way are never farther apart, whatever would be seen; a wave could hide between them."""
+"""Of the cutter's radius: positions of a path are never farther apart, whatever would be seen; a wave could hide between them."""
 HALVINGS = 30
 SEEN, THINNED = 0.1, 0.3
-"""Shares of the chord error: how far a middle may be from its chord, and how far a place that is taken out."""
+"""Shares of the chord error: how far a middle may be from its chord, and how far a position that is taken out."""
 
 
 def follow(
@@ -36,15 +36,17 @@ def follow(
 ) -> list[Floats]:
     """Return the tips (n, 3) of a cutter that follows each plan polyline (k, 2), as high as `DropSurface.drop` puts them.
 
-    Between two tips lies a straight move that leaves the cutter's way by at most `chord` mm; the ends and every kink of the way stay.
+    Between two tips lies a straight move that leaves the cutter's path by at most `chord` mm; the ends and every kink of the path stay.
     Where nothing is under the cutter its tip is at `lowest`.
     """
     if not len(curves):
         return []
+    # Drop at even steps, close enough that nothing as wide as the cutter sees hides between two.
     positions, line = _spaced(curves, 2.0 * _sight(pieces, chord))
     tips = np.column_stack(
         [positions, drop.drop(positions, pieces, lowest, progress.part(0.0, 0.3))]
     )
+    # Halve: invariant, `is_open[k]` marks the chord from tip k to k + 1 whose middle may still be off it by more than SEEN chord.
     is_open = np.append(line[1:] == line[:-1], False)
     for k in range(HALVINGS):
         rows = np.flatnonzero(is_open)
@@ -61,15 +63,17 @@ def follow(
             np.hypot(*np.diff(tips[:, :2], axis=0).T) > chord
         )
     progress.check()
+    # Thin: the rest of the chord error pays for the tips that are left out.
     kept = thinned(tips, line, THINNED * chord)
     return np.split(tips[kept], np.flatnonzero(np.diff(line[kept])) + 1)
 
 
 def thinned(points: Floats, line: Ints, chord: float) -> Bools:
-    """Say which points (n, 3) of lines, numbered (n,) in ascending order, are needed so that none is farther than `chord` from its line.
+    """Return which points (n, 3) of lines, numbered (n,) in ascending order, are needed so that none is farther than `chord` from its line.
 
     The first and last point of each line are.
     """
+    # Douglas and Peucker (1973), all lines at once: the farthest point of each gap is kept until none is farther than the chord error.
     n = len(points)
     kept = np.ones(n, dtype=bool)
     kept[1:-1] = (line[1:-1] != line[:-2]) | (line[1:-1] != line[2:])
@@ -90,7 +94,7 @@ def thinned(points: Floats, line: Ints, chord: float) -> Bools:
 
 
 def chord_distance(points: Floats, start: Floats, end: Floats) -> Floats:
-    """Return how far points (n, 3) are from the straight ways (n, 3) from a start to an end."""
+    """Return how far points (n, 3) are from the straight paths (n, 3) from a start to an end."""
     direction, to = end - start, points - start
     square = (direction * direction).sum(axis=1)
     share = np.clip(
@@ -105,7 +109,8 @@ def chord_distance(points: Floats, start: Floats, end: Floats) -> Floats:
 
 
 def _bent(tips: Floats, line: Ints, chord: float) -> Bools:
-    """Say of each tip (n,) whether the chord from it to the next climbs so differently from its neighbours that a kink may hide in it."""
+    """Return for each tip (n,) whether the chord from it to the next climbs so differently from its neighbours that a kink may hide in
+    it."""
     direction = np.diff(tips, axis=0)
     level = np.hypot(direction[:, 0], direction[:, 1])
     turn = np.abs(np.diff(np.arctan2(direction[:, 2], level)))
@@ -116,7 +121,8 @@ def _bent(tips: Floats, line: Ints, chord: float) -> Bools:
 
 
 def _sight(pieces: Floats, chord: float) -> float:
-    """Return how far apart places may be so that nothing higher than `UNSEEN` chords hides between them: as wide as the cutter is there."""
+    """Return how far apart positions may be so that nothing higher than `UNSEEN` chords hides between them: as wide as the cutter is
+    there."""
     radius = float(pieces[-1, RHO1])
     low, high = 0.0, radius
     for _ in range(HALVINGS):

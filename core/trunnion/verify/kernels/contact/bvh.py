@@ -16,7 +16,7 @@ from numba import njit
 from trunnion.geometry.arrays import Floats, Ints
 
 BINS = 16
-"""Places along each side where a cut is tried."""
+"""Positions along each side where a cut is tried."""
 DEEPEST = 128
 
 
@@ -103,7 +103,7 @@ def _partition_rows(rows: Ints, low: Floats, high: Floats, middle: Floats, keep:
             if weight < cost:
                 cost, along, at, least, size = weight, k, position, first, last - first
     if along < 0:
-        # All are about one place: halved by count.
+        # All are about one position: halved by count.
         return len(rows) // 2
     cut = rest = 0
     for r in rows:

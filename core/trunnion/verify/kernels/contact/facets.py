@@ -10,7 +10,7 @@ six points:
 
 * the half-space of the body against the triangle's own normal, s(n) - n . p: exact where the
   contact is inside the triangle, however large that is;
-* tangents of D at the hull's middle and at the place nearest to the body's core: exact where the
+* tangents of D at the hull's middle and at the position nearest to the body's core: exact where the
   contact is on an edge or a corner;
 * any mixture of two of them, (1 - m) one + m other with m from 0 to 1, which may be lower than
   both.

@@ -868,7 +868,7 @@ def contact_points(
 ) -> None:
     """Fill face (k, 2) and position (k, 2, 3) with where `strip_contact_loop` found its depths.
 
-    On a guide the nearest to the path of 65 even points is taken: a place to show, not part of any
+    On a guide the nearest to the path of 65 even points is taken: a position to show, not part of any
     bound.
     """
     path = np.zeros(MOVE_COLUMNS)

@@ -33,7 +33,7 @@ Ends = tuple[Floats, Floats, Floats]
 
 @njit(cache=True, nogil=True)
 def _nearest_crossing(count: Ints, ends: Floats, ray: int, position: float, reach: float) -> float:
-    """Return the end of material (mm) on a ray that is nearest to a place, NaN where none is within
+    """Return the end of material (mm) on a ray that is nearest to a position, NaN where none is within
     `reach` (mm)."""
     best, found = reach, np.nan
     for k in range(count[ray]):
@@ -180,7 +180,7 @@ def _dual_vertex(
     border.
 
     Least squares of the planes' distances (a quadratic error function), relative to the mean of the
-    crossings: sum n n^T x = sum n (n . (place - mean)), with CALM added on the diagonal (Tikhonov),
+    crossings: sum n n^T x = sum n (n . (position - mean)), with CALM added on the diagonal (Tikhonov),
     so that a flat or straight surface keeps its point at the mean. The point is held within its
     box.
     """

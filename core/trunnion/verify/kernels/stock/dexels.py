@@ -19,7 +19,7 @@ overshoot a concave function. Nothing is sampled over time: the envelope leaves 
 
 Where the tool turns, D is concave in w at every t but F need not be: a tool that swings about its
 middle sweeps two lobes with a gap between them. There an entry is bisected where Newton overshoots,
-and what lies between both entries is taken away only where that is certain: between two places that
+and what lies between both entries is taken away only where that is certain: between two positions that
 are in the body at one time, since D is concave along the ray at that time. Bodies are taken smaller
 by SHRINK, so cuts err towards standing material; a gap that is nowhere deeper than 3 GAP may be
 taken with its lobes. mm, rad.
@@ -72,7 +72,7 @@ RAY_COLUMNS = 22
 SHRINK = 1e-6
 """mm that bodies are made smaller by: a surface that was just cut to is not cut again by what only touches it."""
 MOST_GRAZED = 64
-"""Places that a rapid may be suspected at."""
+"""Positions that a rapid may be suspected at."""
 NOISE = 1e-7
 """mm: depths less apart are the same."""
 GAP = 2e-4
@@ -238,7 +238,7 @@ def _max_depth_turning(
     high: float,
     enough: float,
 ) -> tuple[float, float]:
-    """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
+    """Return the largest depth (mm) between two positions of a ray over a span, and its position; attained,
     within 1e-5 mm, where the tool turns within SURE. One of at most `enough` need not be the largest.
 
     A tangent at w bounds F from above at w' by F(w) + slope (w' - w) + TWIST |w' - w|, the last for
@@ -264,7 +264,7 @@ def _max_depth_turning(
 def _max_depth(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float
 ) -> tuple[float, float]:
-    """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
+    """Return the largest depth (mm) between two positions of a ray over a span, and its position; attained,
     within 1e-5 mm where the tool keeps its axis, else perhaps one of several peaks.
 
     Cutting planes along w, as `_swept_depth` has them along t.
@@ -515,7 +515,7 @@ def _tridexel_cut_arc(
     r, radius = _disc_radius(arcs, first, last, limit, ray[2]), span[ARC_RADIUS]
     if r <= 0.0:
         return 0.0, True
-    # In the plane across the axis, the ray's place nearest to the centre, and how far beside it the ray passes.
+    # In the plane across the axis, the ray's position nearest to the centre, and how far beside it the ray passes.
     x, y = span[CENTRE] - u, span[CENTRE + 1] - v
     along = span[FRAME0 + 6] * x + span[FRAME0 + 7] * y
     lateral, middle = math.sqrt(max(x * x + y * y - along * along, 0.0)), span[CENTRE + 2]
