@@ -24,7 +24,7 @@ from trunnion.part.shape.surfaces import (
     strips_of,
     surfaces_from,
 )
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.verify.judge.verdict import prove_surfaces
 from trunnion.verify.settings import ProofSettings
 
@@ -442,7 +442,7 @@ def proof(
     *sections,
     blank=BLANK,
     tools=(POCKETING,),
-    progress=QUIET,
+    progress=NO_PROGRESS,
     machine=MACHINE,
     material=None,
     setup=SETUP,

@@ -97,7 +97,7 @@ class Finding:
     fix: Fix | None = field(default=None, metadata=ADDED_UNWRITTEN)
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """The first `MOST_SHOWN` names of `where` and how many more there are, as a line on a screen has room for; JSON has all."""
         shown, more = ", ".join(self.where[:MOST_SHOWN]), len(self.where) - MOST_SHOWN
         return f"{shown} and {more} more" if more > 0 else shown
@@ -114,7 +114,7 @@ class Finding:
         return told if self.fix is None else {**told, "fix": self.fix.as_dict()}
 
     def __str__(self) -> str:
-        where = f" ({self.place})" if self.where else ""
+        where = f" ({self.location})" if self.where else ""
         remedy = f": {self.remedy}" if self.remedy else ""
         return f"{self.severity.value} {self.code}: {self.text}{where}{remedy}"
 
@@ -142,7 +142,7 @@ def error(code: str, text: str, *where: str, remedy: str = "", fix: Fix | None =
 
 
 def has_errors(findings: Iterable[Finding]) -> bool:
-    """Say whether any finding is an error."""
+    """Return whether any finding is an error."""
     return any(f.severity is Severity.ERROR for f in findings)
 
 

@@ -57,20 +57,20 @@ class Progress:
             and self._last.time
             and time.monotonic() - self._last.time > BEAT_S
         ):
-            self._tell(self._last.fraction, self._last.text)
+            self._emit(self._last.fraction, self._last.text)
 
     def at(self, fraction: float, text: str = "") -> None:
         """Tell how far the work is, and stop here when asked to."""
         self._look()
         if self._report is not None:
             share = min(max(fraction, 0.0), 1.0)
-            self._tell(float(self._start + share * (self._end - self._start)), self._named(text))
+            self._emit(float(self._start + share * (self._end - self._start)), self._named(text))
 
     def doing(self, text: str) -> None:
         """Tell what the work does now, as far as it was before, and stop here when asked to."""
         self._look()
         if self._report is not None:
-            self._tell(self._last.fraction, self._named(text))
+            self._emit(self._last.fraction, self._named(text))
 
     def part(self, start: float, end: float, name: str = "") -> Progress:
         """Return the progress of a part of this work, from `start` to `end` of it."""
@@ -146,7 +146,7 @@ class Progress:
         if self._cancelled is not None and self._cancelled():
             raise Cancelled
 
-    def _tell(self, fraction: float, text: str) -> None:
+    def _emit(self, fraction: float, text: str) -> None:
         """Report, never less than what this piece of work told before: two parts of it may have been given the same share."""
         last = self._last
         last.fraction, last.text, last.time = max(fraction, last.fraction), text, time.monotonic()
@@ -157,5 +157,5 @@ class Progress:
         return ": ".join(word for word in (self._name, text) if word)
 
 
-QUIET = Progress()
+NO_PROGRESS = Progress()
 """Progress that nobody looks at."""

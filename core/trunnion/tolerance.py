@@ -43,7 +43,7 @@ FINISH_GOUGE = 6e-3
 SKIN_CHORD = 5e-4
 """Chord error of the triangles that finishing cutters are dropped on: with that of the path an eighth of a scallop of 0.004 mm."""
 
-HOLDER_ROOM = 0.2
+HOLDER_CLEARANCE = 0.2
 """How far neck, shank and holder of a leaning tool are kept from part and fixtures: what a machine's five axes may add up to."""
 
 CONTACT_BOUND = 2e-3
@@ -92,5 +92,5 @@ SHORT_ARC = 5e-3
 ON_REGION = 1e-3
 """A cutter location this far outside its region is still on its rim: offsets agree to 1 um."""
 
-BESIDE_PLANE = 0.02
+OFF_PLANE = 0.02
 """How far above or below a horizontal face a section is taken to see what stands on it: clear of the face, below the smallest blend."""

@@ -32,7 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     app.setApplicationName("Trunnion")
     app.setOrganizationName("Trunnion")
     i18n.use(preferences.language())
-    tidy = GcControl()
+    gc_control = GcControl()
     window = Window()
     window.show()
     if words:
@@ -40,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return QApplication.exec()
     finally:
-        tidy.stop()
+        gc_control.stop()
 
 
 def run() -> NoReturn:

@@ -108,9 +108,9 @@ class Arrangement:
         self._hide_old_tabs()
 
     def _size(self) -> None:
-        def resize(sizes: dict[str, int], way: Qt.Orientation) -> None:
+        def resize(sizes: dict[str, int], orientation: Qt.Orientation) -> None:
             self._window.resizeDocks(
-                [self._docks[name] for name in sizes], list(sizes.values()), way
+                [self._docks[name] for name in sizes], list(sizes.values()), orientation
             )
 
         resize({"steps": _LEFT_WIDTH, "features": _RIGHT_WIDTH}, Qt.Orientation.Horizontal)

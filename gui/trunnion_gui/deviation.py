@@ -21,7 +21,7 @@ class DeviationSource(QObject):
         self.is_on = False
         self.shown: DrawnMap | None = None
         self._verdict: object = None
-        self._asked = 0
+        self._requested = 0
         document.jobs.worker.replied.connect(self._receive)
         document.jobs.worker.restarted.connect(self._restart)
         document.changed.connect(self._follow)
@@ -39,22 +39,22 @@ class DeviationSource(QObject):
         self.arrived.emit(self.shown if on else None)
 
     def _restart(self) -> None:
-        self._asked, self._verdict = 0, None
+        self._requested, self._verdict = 0, None
         self._follow()
 
     def _follow(self) -> None:
         verdict = self._document.session.verdict
         if not self.is_on or self._document.is_busy or verdict is self._verdict:
             return
-        self._verdict, self.shown, self._asked = verdict, None, 0
+        self._verdict, self.shown, self._requested = verdict, None, 0
         self.arrived.emit(None)
         if verdict is not None:
-            self._asked = self._document.jobs.worker.send("deviation", self._document.session)
+            self._requested = self._document.jobs.worker.send("deviation", self._document.session)
 
     def _receive(self, reply: Reply) -> None:
-        if not reply.is_last or reply.number != self._asked:
+        if not reply.is_last or reply.number != self._requested:
             return
-        self._asked = 0
+        self._requested = 0
         if reply.kind == "failed":
             self._document.notice(reply.text)
         if reply.kind == "done":

@@ -167,8 +167,8 @@ def with_operation_before(id: str, before: str | None) -> Edit:
                 f"{id} is cut in setup {moved.setup} and can't be moved to {tree.operation(before).setup}"
             )
         rest = [o for o in tree.operations if o.id != id]
-        place = _place(rest, moved, before)
-        ordered = (*rest[:place], moved, *rest[place:])
+        index = _index_of(rest, moved, before)
+        ordered = (*rest[:index], moved, *rest[index:])
         _check_order(ordered)
         if [o.id for o in ordered] == [o.id for o in tree.operations]:
             return session
@@ -177,7 +177,7 @@ def with_operation_before(id: str, before: str | None) -> Edit:
     return edit
 
 
-def _place(rest: list[Operation], moved: Operation, before: str | None) -> int:
+def _index_of(rest: list[Operation], moved: Operation, before: str | None) -> int:
     if before is not None:
         return next(n for n, o in enumerate(rest) if o.id == before)
     return max((n + 1 for n, o in enumerate(rest) if o.setup == moved.setup), default=len(rest))

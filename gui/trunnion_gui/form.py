@@ -117,11 +117,11 @@ class Form(QWidget):
         field.setObjectName(setting.key)
         field.setToolTip(tooltip(setting))
         field.installEventFilter(self)
-        on_change(field, lambda: self._tell(setting.key))
+        on_change(field, lambda: self._report(setting.key))
         self._fields[setting.key] = field
         return field
 
-    def _tell(self, key: str) -> None:
+    def _report(self, key: str) -> None:
         if not self._is_filling:
             self.changed.emit(key, read(self._fields[key]), f"{key} {id(self)} {self._visit}")
 

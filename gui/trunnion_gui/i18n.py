@@ -8,7 +8,7 @@ from importlib.resources import files
 
 from trunnion.registry import OWN_RESOURCES, resource_folders
 
-_chosen = "en"
+_language = "en"
 
 
 def languages() -> tuple[str, ...]:
@@ -22,13 +22,13 @@ def languages() -> tuple[str, ...]:
 
 def use(language: str) -> None:
     """Speak a language from now on (widgets made earlier keep their words); an unknown one means English."""
-    global _chosen
-    _chosen = language if language in languages() else "en"
+    global _language
+    _language = language if language in languages() else "en"
 
 
 def tr(text: str) -> str:
     """Return a text in the chosen language, the English one when nobody translated it."""
-    return _words(_chosen).get(text, text)
+    return _words(_language).get(text, text)
 
 
 @cache

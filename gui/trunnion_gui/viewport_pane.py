@@ -93,7 +93,7 @@ class ViewportPane(QWidget):
         self._column.addWidget(self.section_bar)
         self._tools: list[PictureTool] = []
         self.scene.clicked.connect(self._click)
-        self.scene.asked.connect(self._ask)
+        self.scene.menu_requested.connect(self._open_menu)
         self.scene.hovered.connect(self._hover)
         document.mesh_changed.connect(self._show_mesh)
         document.redrawn.connect(self._redraw_mesh)
@@ -223,12 +223,12 @@ class ViewportPane(QWidget):
             lambda: self._draw_paths(session),
         )
         self.legend.show_rows(self._legend(session))
-        self._place()
+        self._arrange()
         self.welcome.setVisible(not self._document.has_part and not self._document.is_busy)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._place()
+        self._arrange()
 
     def _once(self, name: str, inputs: tuple, draw: Callable[[], None]) -> None:
         """Draw a layer only when what it is drawn from is another thing than last time."""
@@ -242,11 +242,11 @@ class ViewportPane(QWidget):
         self._drawn[name] = inputs
         draw()
 
-    def _place(self) -> None:
+    def _arrange(self) -> None:
         self.legend.move(_EDGE, _EDGE)
         self.scale.move(_EDGE, _EDGE)
         card = next((c for c in (self.scale, self.legend) if c.isVisible()), None)
-        self.scene.keep_clear(
+        self.scene.set_covered(
             QRectF(card.geometry()).adjusted(-_EDGE, -_EDGE, _EDGE, _EDGE)
             if card is not None
             else QRectF()
@@ -276,12 +276,12 @@ class ViewportPane(QWidget):
         else:
             self._document.selection.select_face(click.face)
 
-    def _ask(self, click: Click, at: QPoint) -> None:
+    def _open_menu(self, click: Click, at: QPoint) -> None:
         """Offer what can be done with the face that was clicked, or with all selected ones when it is among them."""
-        chosen = self._document.selection.current
+        selected = self._document.selection.current
         if not click.face or self._tool_on() is not None:
             return
-        if not (chosen.kind == "faces" and click.face in chosen.faces):
+        if not (selected.kind == "faces" and click.face in selected.faces):
             self._document.selection.select_face_alone(click.face)
         menu = self._views.face_menu(self, self._document.selection.current.faces)
         menu.aboutToHide.connect(menu.deleteLater)
@@ -290,16 +290,16 @@ class ViewportPane(QWidget):
 
     def _write_ids(self, session: Session) -> None:
         """Write the ID of every feature on the part; of the faces of the selection, when there is one."""
-        mesh, found, chosen = (
+        mesh, found, selected = (
             self._document.mesh,
             session.recognition,
             self._document.selection.current,
         )
         if not self.shows["ids"] or mesh is None:
             self.scene.show_names(())
-        elif chosen.faces:
+        elif selected.faces:
             self.scene.show_names(
-                [(str(tag), point_on(mesh, (tag,))) for tag in chosen.faces[:_MOST_IDS]]
+                [(str(tag), point_on(mesh, (tag,))) for tag in selected.faces[:_MOST_IDS]]
             )
         else:
             self.scene.show_names(
@@ -311,8 +311,8 @@ class ViewportPane(QWidget):
             self.scene.use_frame(session.recognition.frame)
 
     def _operation(self) -> str:
-        chosen = self._document.selection.current
-        return chosen.id if chosen.kind == "operation" else ""
+        selected = self._document.selection.current
+        return selected.id if selected.kind == "operation" else ""
 
     def _shows_paths(self, session: Session) -> bool:
         return (
@@ -430,10 +430,10 @@ class ViewportPane(QWidget):
         self._point(None, QPointF())
         self.refresh()
 
-    def look_at_worst_point(self, place: WorstPoint) -> None:
+    def look_at_worst_point(self, worst: WorstPoint) -> None:
         """Go to a worst place of the map."""
-        self.scene.look_at(place.point, place.face, _CLOSE_LOOK)
-        self.scene.show_label(fine_amount(place.deviation), place.point)
+        self.scene.look_at(worst.point, worst.face, _CLOSE_LOOK)
+        self.scene.show_label(fine_amount(worst.deviation), worst.point)
 
     def _point(
         self, found: tuple[int, float, tuple[float, float, float]] | None, at: QPointF
@@ -444,10 +444,10 @@ class ViewportPane(QWidget):
         if found is None:
             self.hinted.emit("")
             return
-        face, value, place = found
+        face, value, position = found
         owners = [f for f in self._document.shown.recognition or () if face in f.tags]
         owner = min(owners, key=lambda f: len(f.tags)).id if owners else ""
-        where = "x {:.2f}  y {:.2f}  z {:.2f}".format(*place)
+        where = "x {:.2f}  y {:.2f}  z {:.2f}".format(*position)
         self.hinted.emit(
             " · ".join(w for w in (fine_amount(value), f"{tr('face')} {face}", owner, where) if w)
         )

@@ -54,7 +54,7 @@ class Window(QMainWindow):
 
     def __init__(self, factory: str = ENGINE) -> None:
         super().__init__()
-        self._is_leaving = False
+        self._is_closing = False
         self.setWindowTitle("Trunnion")
         self.setWindowIcon(icons.window_icon())
         self.setAcceptDrops(True)
@@ -122,7 +122,7 @@ class Window(QMainWindow):
         QTimer.singleShot(0, self.arrangement.settle)
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        if not self._is_leaving and self.unsaved.holds(self._leave):
+        if not self._is_closing and self.unsaved.holds(self._leave):
             event.ignore()
             return
         self.arrangement.keep()
@@ -132,7 +132,7 @@ class Window(QMainWindow):
         super().closeEvent(event)
 
     def _leave(self) -> None:
-        self._is_leaving = True
+        self._is_closing = True
         self.close()
 
     def show_playback(self, on: bool) -> None:
@@ -173,7 +173,7 @@ class Window(QMainWindow):
         document.changed.connect(self._refresh)
         document.jobs.changed.connect(self._refresh)
         document.selection.changed.connect(lambda _: self.registry.refresh())
-        document.noticed.connect(self._tell)
+        document.noticed.connect(self._report)
         document.files.opened.connect(self._opened)
         document.files.saved.connect(preferences.add_recent)
         self.docks.messages.counted.connect(
@@ -186,24 +186,24 @@ class Window(QMainWindow):
         for changed in (self.player.opened, self.player.changed, self.deviation.arrived):
             changed.connect(lambda *_: self.registry.refresh())
         self.deviation.arrived.connect(self.docks.deviation.show_map)
-        self.docks.deviation.chosen.connect(self.viewport.look_at_worst_point)
+        self.docks.deviation.picked.connect(self.viewport.look_at_worst_point)
         self.viewport.hinted.connect(self.status.hint)
         generate.motions_changed.connect(self.viewport.show_motions)
 
-    def use_theme(self, chosen: colours.Theme) -> None:
+    def use_theme(self, new_theme: colours.Theme) -> None:
         """Give everything the look of a theme."""
-        self.theme = chosen
-        theme.apply(chosen)
+        self.theme = new_theme
+        theme.apply(new_theme)
         self.registry.redraw()
         # The main button is drawn on the accent colour, in both themes.
-        self.registry.action("run.program").setIcon(icons.icon("program", chosen.accent_text))
-        self.viewport.use_theme(chosen)
-        self.docks.use_theme(chosen)
-        self.playback.use_theme(chosen)
+        self.registry.action("run.program").setIcon(icons.icon("program", new_theme.accent_text))
+        self.viewport.use_theme(new_theme)
+        self.docks.use_theme(new_theme)
+        self.playback.use_theme(new_theme)
         for view in self.views:
-            view.use_theme(chosen)
+            view.use_theme(new_theme)
         for panel in self.panels.values():
-            panel.use_theme(chosen)
+            panel.use_theme(new_theme)
 
     # following the document
 
@@ -216,7 +216,7 @@ class Window(QMainWindow):
         star = "*" if part is not None and history.is_dirty else ""
         self.setWindowTitle(f"{part.name}{star} – Trunnion" if part is not None else "Trunnion")
 
-    def _tell(self, finding: Finding) -> None:
+    def _report(self, finding: Finding) -> None:
         self.viewport.notice.show_finding(finding)
 
     def _opened(self, path: str) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 
 Compare = Callable[..., Any]
 
@@ -55,7 +55,7 @@ def recognition(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     data = part.to_bytes()
 
     def fresh() -> Any:
-        return family.recognize(face_graph, Part.from_bytes(data), family.settings(), QUIET)
+        return family.recognize(face_graph, Part.from_bytes(data), family.settings(), NO_PROGRESS)
 
     def by_boolean() -> None:
         for z in range(1, 26):
@@ -90,7 +90,13 @@ def roughing(path: Path, folder: Path, compared: Compare) -> Iterator[Any]:
     def ours() -> list[Any]:
         return [
             rough(
-                drive, o.tool, o.data, stock, setup, choose(rough.settings, dict(o.choices)), QUIET
+                drive,
+                o.tool,
+                o.data,
+                stock,
+                setup,
+                choose(rough.settings, dict(o.choices)),
+                NO_PROGRESS,
             )
             for o, drive in jobs
         ]

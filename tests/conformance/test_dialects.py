@@ -51,7 +51,7 @@ from trunnion.post.header import REJECTED, STAMP_LINES, Header
 from trunnion.post.linearize import lines_for_arcs
 from trunnion.post.release import is_released
 from trunnion.post.settings import PostSettings
-from trunnion.shop.kinematics import NO_PLACES, Places
+from trunnion.shop.kinematics import NO_WORK_POSITIONS, WorkPositions
 from trunnion.units import MM_PER_INCH
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
@@ -71,11 +71,15 @@ def dialect(request) -> Dialect:
     return DIALECTS[request.param]()
 
 
-def written(dialect: Dialect, program: Program, places: Places = NO_PLACES, **chosen) -> str:
+def written(
+    dialect: Dialect, program: Program, places: WorkPositions = NO_WORK_POSITIONS, **chosen
+) -> str:
     return dialect.write([program], HEADER, PostSettings(**chosen), places)
 
 
-def again(dialect: Dialect, program: Program, places: Places = NO_PLACES, **chosen) -> Program:
+def again(
+    dialect: Dialect, program: Program, places: WorkPositions = NO_WORK_POSITIONS, **chosen
+) -> Program:
     (read,) = dialect.read(
         written(dialect, program, places, **chosen), TOOLS, [program.setup], places
     )
@@ -343,7 +347,7 @@ def test_a_tool_of_the_other_kind_is_refused(dialect):
 
 
 @pytest.mark.parametrize(
-    "places", [NO_PLACES, {"S1": standing(TABLE)}], ids=["three axes", "rotary axes"]
+    "places", [NO_WORK_POSITIONS, {"S1": standing(TABLE)}], ids=["three axes", "rotary axes"]
 )
 def test_a_leaning_tool_is_written_so_that_it_is_read_or_refused(dialect, places):
     path = leaning_path(

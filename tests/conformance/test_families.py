@@ -25,7 +25,7 @@ from trunnion.findings import BadInput
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Recognition
 from trunnion.pipeline.planning.family import ratings
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.contract import exclusive_kinds, feature_kinds, smallest_sizes
 from trunnion.report.palette import rgb
 from trunnion.settings import choose
@@ -39,7 +39,7 @@ def family_of(name):
     return registry.get("families", name)()
 
 
-def recognized(name, part, progress=QUIET) -> Recognition:
+def recognized(name, part, progress=NO_PROGRESS) -> Recognition:
     family = family_of(name)
     return family.recognize(part.graph(), part, choose(family.settings, {}), progress)
 
@@ -208,7 +208,7 @@ def test_a_part_without_faces_is_refused_or_answered_in_words(name):
     assert suits.score == 0.0 and is_one_line(suits.reason)
     family = family_of(name)
     try:
-        found = family.recognize(empty(), own_part(name), choose(family.settings, {}), QUIET)
+        found = family.recognize(empty(), own_part(name), choose(family.settings, {}), NO_PROGRESS)
     except BadInput as refused:
         assert is_one_line(str(refused))
         return

@@ -19,7 +19,13 @@ from trunnion.model.motion.listing import listing
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
-from trunnion.shop.kinematics import NO_PLACES, axes_of, poses_of, rotary_solutions, words_of
+from trunnion.shop.kinematics import (
+    NO_WORK_POSITIONS,
+    axes_of,
+    poses_of,
+    rotary_solutions,
+    words_of,
+)
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
 GAUGE = 120.0
@@ -123,7 +129,7 @@ def test_a_direction_leads_to_angles_that_hold_it(name, machine):
 def test_a_straight_program_is_posted_and_read_back(name, machine):
     setup = replace(S1, machine=name)
     program = replace(program_1(), setup=setup)
-    places = {setup.name: standing(machine)} if machine.rotary else NO_PLACES
+    places = {setup.name: standing(machine)} if machine.rotary else NO_WORK_POSITIONS
     written = []
     for known in registry.names("dialects"):
         dialect = registry.get("dialects", known)()

@@ -16,7 +16,7 @@ from trunnion.plan.contract import DriveNeeds, planner_for
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import SetupSettings
 from trunnion.plan.typical import typical_plan
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.contract import feature_kinds
 from trunnion.settings import GROUPS, declared, digest
 from trunnion.store.mapping import Members, from_xml, to_xml
@@ -34,7 +34,7 @@ def routed(name):
     return own(name)[0], until(name, "optimize")
 
 
-def route_again(name, progress=QUIET, **choices):
+def route_again(name, progress=NO_PROGRESS, **choices):
     """Return the process that the planner makes of the same blank and features once more."""
     engine, session = own(name)[0], until(name, "blank")
     session = replace(session, choices={**session.choices, **choices})
@@ -174,10 +174,10 @@ def test_its_route_reads_its_own_settings_and_no_others(name):
 def test_its_drives_can_be_told_apart_and_lie_in_a_setups_frame(name):
     session, scene = routed(name)[1], scene_of(name)
     for o in session.process.of_setup(session.setups[0].name):
-        first, again = (planner_for(name).drive(o, needs_of(o), scene, QUIET) for _ in (0, 1))
+        first, again = (planner_for(name).drive(o, needs_of(o), scene, NO_PROGRESS) for _ in (0, 1))
         assert isinstance(first.drive, needs_of(o).drive)
         assert first.drive.is_empty in (True, False)
-        assert digest(first.told) == digest(again.told)
+        assert digest(first.identity) == digest(again.identity)
         assert first.setup.name == o.setup and first.setup.frame is not None
 
 
@@ -187,7 +187,7 @@ def test_a_drive_that_it_does_not_make_is_refused_in_words(name):
     with pytest.raises(
         Refused, match=f"driven by a int, which is not made for {planner_for(name).noun}"
     ):
-        planner_for(name).drive(operation, DriveNeeds(drive=int), None, QUIET)
+        planner_for(name).drive(operation, DriveNeeds(drive=int), None, NO_PROGRESS)
 
 
 @by_name
@@ -195,7 +195,9 @@ def test_a_blank_that_no_machine_takes_is_said(name):
     engine, session = own(name)[0], until(name, "blank")
     blank = session.blank
     large = replace(blank, high=blank.low + 9e4)
-    after = step_named("route").work(replace(session, blank=large), engine.context, QUIET).session
+    after = (
+        step_named("route").work(replace(session, blank=large), engine.context, NO_PROGRESS).session
+    )
     assert "route.travel" in {f.code for f in after.process.findings}
 
 

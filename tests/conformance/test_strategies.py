@@ -21,8 +21,8 @@ from trunnion.model.session import Session
 from trunnion.model.tool import Tool
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import make_paths
-from trunnion.plan.freeform.reach import places_on
-from trunnion.progress import QUIET
+from trunnion.plan.freeform.reach import samples_on
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.toolpath.contract import ToolAxis
 from trunnion.verify.finish.sweep import Sweep
@@ -50,7 +50,7 @@ class Case:
     operation: Operation
     is_own: bool
 
-    def path(self, operation=None, progress=QUIET, alone=False) -> OperationPath:
+    def path(self, operation=None, progress=NO_PROGRESS, alone=False) -> OperationPath:
         """Return the toolpath of the operation, or of a changed one in its place."""
         last = operation or self.operation
         before = () if alone else self.session.process.operations[:-1]
@@ -237,7 +237,7 @@ def standing(name: str, tool: Tool, found: OperationPath | None) -> float:
     ]
     cut += [] if found is None else [(tool, found.path)]
     tags = operation.faces or at.engine.context.part.tags
-    points = places_on(at.engine.context.skin(), tuple(tags), PLACES).point
+    points = samples_on(at.engine.context.skin(), tuple(tags), PLACES).point
     far = np.full(len(points), FAR)
     sections = [
         ProgramSection(operation="", tool=t, spindle=1000.0, path=p) for t, p in cut if len(p)
@@ -245,7 +245,7 @@ def standing(name: str, tool: Tool, found: OperationPath | None) -> float:
     if not sections:
         return FAR
     sweep = Sweep.of(moves_of(sections), NEAR)
-    return float(sweep.left(setup.frame.to_local(points), far)[0].mean())
+    return float(sweep.residual(setup.frame.to_local(points), far)[0].mean())
 
 
 @pytest.mark.parametrize("times", (LARGER, LITTLE_LARGER))

@@ -29,7 +29,7 @@ from trunnion.model.tool import Holder, Tool
 from trunnion.model.verdict import Deviation, OperationProof, Outcome, Verdict
 from trunnion.post.header import STAMP_LINES, plan_digest
 from trunnion.post.release import release
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose, digest, setting, settings
 from trunnion.store.project import load_project, save_project
 
@@ -258,7 +258,7 @@ class FakeEngine:
         self._attached = ""
         self._playback = None
 
-    def playback(self, session, cell=0.0, progress=QUIET):
+    def playback(self, session, cell=0.0, progress=NO_PROGRESS):
         from trunnion.pipeline.proof.playback import Playback
         from trunnion.shop import load_shop
 
@@ -273,10 +273,10 @@ class FakeEngine:
             passages=tuple(replace(p, file="S1.nc") for p in line.passages),
         )
 
-    def moment(self, key, position, seconds=np.inf, progress=QUIET):
+    def moment(self, key, position, seconds=np.inf, progress=NO_PROGRESS):
         return self._playback.towards(position, seconds, progress)
 
-    def deviation_map(self, session, progress=QUIET):
+    def deviation_map(self, session, progress=NO_PROGRESS):
         from trunnion.report.deviation import deviation_map
 
         return deviation_map(self._mesh, session.verdict.deviation, 0.02)
@@ -284,7 +284,7 @@ class FakeEngine:
     def settings(self) -> dict[str, tuple[type, ...]]:
         return dict.fromkeys(STEPS, ()) | {"blank": (BlankSettings,), "toolpath": (RoughSettings,)}
 
-    def open(self, path, *, solid=None, progress=QUIET) -> Session:
+    def open(self, path, *, solid=None, progress=NO_PROGRESS) -> Session:
         progress.at(0.5, "reading the part")
         path = Path(path)
         if not path.exists():
@@ -317,16 +317,16 @@ class FakeEngine:
     def keep(self) -> tuple[bytes, str]:
         return PART_BYTES, ".step"
 
-    def attach(self, session, data=b"", suffix="", progress=QUIET) -> None:
+    def attach(self, session, data=b"", suffix="", progress=NO_PROGRESS) -> None:
         self._attached = session.part.name
 
-    def mesh(self, session, progress=QUIET) -> Mesh:
+    def mesh(self, session, progress=NO_PROGRESS) -> Mesh:
         return self._mesh
 
-    def save(self, session, path, progress=QUIET) -> None:
+    def save(self, session, path, progress=NO_PROGRESS) -> None:
         save_project(session, path, *self.keep())
 
-    def write(self, session, folder, *, name="", date="", progress=QUIET) -> tuple[str, ...]:
+    def write(self, session, folder, *, name="", date="", progress=NO_PROGRESS) -> tuple[str, ...]:
         Path(folder).mkdir(parents=True, exist_ok=True)
         for f in session.posted:
             (Path(folder) / f"{session.part.name}.{f.suffix}").write_text(f.text)
@@ -340,7 +340,7 @@ class FakeEngine:
             states[step] = "empty" if record is None else "stale" if is_stale else "done"
         return states
 
-    def run(self, session, until="repair", progress=QUIET) -> Session:
+    def run(self, session, until="repair", progress=NO_PROGRESS) -> Session:
         for step in STEPS[: STEPS.index(until) + 1]:
             if self.states(session)[step] == "done":
                 continue
@@ -650,7 +650,7 @@ class FailingEngine(FakeEngine):
             posted=(PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text=text),),
         )
 
-    def write(self, session, folder, *, name="", date="", progress=QUIET) -> tuple[str, ...]:
+    def write(self, session, folder, *, name="", date="", progress=NO_PROGRESS) -> tuple[str, ...]:
         return super().write(replace(session, posted=release(session)), folder)
 
 

@@ -38,7 +38,7 @@ def test_a_planted_gouge_has_the_gouges_colour(mapped):
 
 
 def test_what_is_left_has_the_other_colour(mapped):
-    assert hue(pixel(mapped, (*LEFT, FLOOR))) @ hue(load_palette().deviation.left[-1]) > 0.9
+    assert hue(pixel(mapped, (*LEFT, FLOOR))) @ hue(load_palette().deviation.residual[-1]) > 0.9
 
 
 def test_what_is_finished_is_grey(mapped):
@@ -60,7 +60,7 @@ def test_the_scale_stands_in_the_legends_place(mapped):
         )
 
     assert hue(colour(-0.9 * shown.limit)) @ hue(load_palette().deviation.gouge[-1]) > 0.9
-    assert hue(colour(0.9 * shown.limit)) @ hue(load_palette().deviation.left[-1]) > 0.9
+    assert hue(colour(0.9 * shown.limit)) @ hue(load_palette().deviation.residual[-1]) > 0.9
     assert np.ptp(colour(0.0)) < 25
 
 
@@ -83,11 +83,11 @@ def test_the_worst_places_are_listed_and_a_click_goes_there(mapped):
     assert [table.item(r, 3).text() for r in range(table.rowCount())] == ["pocket-02", "pocket-03"]
     QTest.mouseClick(table.viewport(), BUTTON, pos=table.visualItemRect(table.item(0, 1)).center())
     scene = mapped.viewport.scene
-    at = scene.where(mapped.docks.deviation.places[0].point)
+    at = scene.where(mapped.docks.deviation.worst_points[0].point)
     assert abs(at.x() - scene.width() / 2) < 3 and abs(at.y() - scene.height() / 2) < 3
     assert scene.view.camera.parallel_scale < 50.0
     # Beside the number that is written at the place.
-    x, y, z = mapped.docks.deviation.places[0].point
+    x, y, z = mapped.docks.deviation.worst_points[0].point
     inside = np.array([GOUGE[0] - x, GOUGE[1] - y, 0.0]) * 0.8 + (x, y, z)
     assert hue(pixel(mapped, inside)) @ hue(load_palette().deviation.gouge[-1]) > 0.9
 

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QPushButton
 def answers(window) -> dict[str, QPushButton]:
     """Return the shown buttons that go on as a family, by its name and in their order."""
     panel = window.panels["recognize"]
-    row = [panel._answers.itemAt(n).widget() for n in range(panel._answers.count())]
+    row = [panel._actions.itemAt(n).widget() for n in range(panel._actions.count())]
     return {b.property("family"): b for b in row if b.isVisible()}
 
 

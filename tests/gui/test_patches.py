@@ -250,7 +250,7 @@ def test_a_plane_through_a_click_cuts_a_patch_in_two(shown, qtbot):
     shown.document.selection.select_face_alone(face_at(shown, ON_TOP))
     shown.registry.run("patch.cut_plane")
     bar = shown.views["surface"].cutting
-    assert bar.isVisible() and bar.manner.currentData() == "x"  # across the face's longest side
+    assert bar.isVisible() and bar.method.currentData() == "x"  # across the face's longest side
     click(shown, (-10.0, -14.0, TOP))
     assert bar.value.value() == pytest.approx(-10.0, abs=0.2)
     assert "cut line" in shown.viewport.scene.view.actors
@@ -271,7 +271,7 @@ def test_three_clicks_make_a_plane(shown, qtbot):
     n = shown.document.session.part.n_faces
     shown.registry.run("patch.cut_plane")
     bar = shown.views["surface"].cutting
-    bar.manner.setCurrentIndex(bar.manner.findData(THREE))
+    bar.method.setCurrentIndex(bar.method.findData(THREE))
     x, y, z = ON_SMALL[2]
     for place in ((x, y, z), (x + 1.0, y + 1.0, z - 0.26), (x - 1.0, y - 1.0, z - 0.26)):
         assert not bar.apply.isEnabled()
@@ -291,12 +291,12 @@ def test_a_line_drawn_with_clicks_cuts_a_patch_and_the_cut_can_be_taken_back(sho
     shown.document.selection.select_face_alone(face_at(shown, ON_LARGE))
     shown.registry.run("patch.cut_way")
     bar = shown.views["surface"].cutting
-    assert bar.manner.currentData() == DRAWN and not bar.apply.isEnabled()
+    assert bar.method.currentData() == DRAWN and not bar.apply.isEnabled()
     for dx, dy in ((-4.0, 0.0), (0.0, 1.5), (3.0, 1.0), (4.0, 0.0)):
         click(shown, (x + dx, y + dy, z))
-    assert len(bar.places) == 4
+    assert len(bar.positions) == 4
     QTest.mouseClick(bar.back, LEFT)
-    assert len(bar.places) == 3
+    assert len(bar.positions) == 3
     QTest.mouseClick(bar.apply, LEFT)
     done(shown, qtbot)
     assert shown.document.session.part.n_faces == n + 1
@@ -328,7 +328,7 @@ def test_a_cut_along_its_faces_border_is_refused_in_words(shown, qtbot):
     shown.document.selection.select_face_alone(face_at(shown, ON_TOP))
     shown.registry.run("patch.cut_plane")
     bar = shown.views["surface"].cutting
-    assert bar.manner.currentData() == "x"
+    assert bar.method.currentData() == "x"
     bar.value.setValue(-30.0)
     QTest.mouseClick(bar.apply, LEFT)
     qtbot.waitUntil(lambda: shown.viewport.notice.isVisible(), timeout=30000)

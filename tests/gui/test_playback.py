@@ -160,14 +160,14 @@ def test_while_a_job_runs_nothing_plays_and_the_stock_follows_afterwards(played,
 
 def test_words_that_do_not_fit_end_in_dots(played, qtbot):
     go(played, qtbot, 20.0)
-    full = played.playback.place.text()
+    full = played.playback.position_label.text()
     assert not full.endswith("…")
-    played.playback.place.setFixedWidth(120)
-    qtbot.waitUntil(lambda: played.playback.place.width() == 120)
+    played.playback.position_label.setFixedWidth(120)
+    qtbot.waitUntil(lambda: played.playback.position_label.width() == 120)
     go(played, qtbot, 22.0)
-    assert played.playback.place.text().endswith("…")
-    played.playback.place.setMinimumWidth(0)
-    played.playback.place.setMaximumWidth(16777215)
+    assert played.playback.position_label.text().endswith("…")
+    played.playback.position_label.setMinimumWidth(0)
+    played.playback.position_label.setMaximumWidth(16777215)
 
 
 def test_each_operation_has_its_tool(played, qtbot):
@@ -210,7 +210,7 @@ def test_the_tool_never_runs_ahead_of_the_stock_that_was_asked_for(played, qtbot
     ahead = []
     played.player.set_speed(1000)
     played.player.moved.connect(
-        lambda p: ahead.append(p - max(played.player._asked_for, played.player._stock_at))
+        lambda p: ahead.append(p - max(played.player._requested_for, played.player._stock_at))
     )
     played.player.play()
     qtbot.waitUntil(lambda: not played.player.is_playing, timeout=60000)
@@ -278,7 +278,7 @@ def test_the_words_say_block_line_and_operation(played, qtbot):
     go(played, qtbot, 60.0)
     passage = played.player.timeline.passage(60.0)
     assert (
-        played.playback.place.text()
+        played.playback.position_label.text()
         == f"block 60 of {int(played.player.end)} · line {60 + len(HEADER)} · {passage.operation}"
     )
 

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton
 
 from trunnion_gui.storage import preferences, recovery
-from trunnion_gui.storage.autosave import notes_of, whose_work
+from trunnion_gui.storage.autosave import autosave_owner, notes_of
 from trunnion_gui.storage.unsaved import CANCEL, DISCARD, SAVE
 
 LEFT = Qt.MouseButton.LeftButton
@@ -286,7 +286,7 @@ def test_a_recovered_project_knows_its_file_and_still_has_to_be_saved(
     programmed.document.choose("fake.blank.side", "Allowance", 8.0)
     left = left_behind(programmed, monkeypatch, qtbot)
     window = make_window()
-    told = whose_work(left)
+    told = autosave_owner(left)
     assert (
         "tray.trunnion" in window.viewport.notice.text
         and told.time.partition("T")[2] in window.viewport.notice.text
@@ -343,7 +343,7 @@ def test_an_autosave_is_left_behind_when_another_program_got_its_number(tmp_path
     left = preferences.autosave_file().with_name("autosave-1.trunnion")
     left.write_bytes(b"")
     os.utime(left, (1.0, 1.0))  # older than the program that has the number now
-    assert preferences.left_behind() == left
+    assert preferences.leftover_file() == left
 
 
 def test_work_that_can_not_be_kept_is_told(opened, monkeypatch, qtbot):

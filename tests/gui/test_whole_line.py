@@ -154,7 +154,7 @@ def test_a_click_on_a_floor_selects_its_pocket_and_the_row_its_faces(programmed,
     programmed.clicks(window.viewport.scene.view, window.viewport.scene.where(point).toPoint())
     assert window.document.selection.current.id == pocket.id
     assert window.docks.features.tree.currentItem().text(0) == pocket.id
-    assert set(window.viewport.scene._chosen) == set(pocket.tags)
+    assert set(window.viewport.scene._selected) == set(pocket.tags)
 
 
 def test_a_pockets_floor_has_the_pockets_colour(programmed, qtbot):

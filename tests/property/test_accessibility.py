@@ -91,13 +91,13 @@ def test_an_obstacle_stops_just_the_tools_that_it_is_deep_in(form, seed):
 
 def test_of_more_obstacles_than_are_kept_the_last_ones_are():
     obstacles = Obstacles.none(2)
-    kept = obstacles.place.shape[1]
+    kept = obstacles.position.shape[1]
     row = np.ones(1, np.int64)
     for n in range(kept + 3):
         obstacles.add(np.array([[float(n), 0.0, 0.0]]), row)
     obstacles.add(np.full((1, 3), np.nan), row)
     assert obstacles.count.tolist() == [0, kept]
-    assert obstacles.place[1, :, 0].tolist() == list(range(kept + 2, 2, -1))
+    assert obstacles.position[1, :, 0].tolist() == list(range(kept + 2, 2, -1))
 
 
 def test_a_pit_that_no_tool_enters_is_known_after_the_first_poses():

@@ -86,7 +86,7 @@ def sampled_depth(part, move, corners, rounds=9, grid=(11, 7, 7), kept=5):
 
 
 def attained(moves, kind, move, place):
-    """Return the deepest that a place (3,) is in the tool's closed bodies of a kind along a move."""
+    """Return the deepest that a position (3,) is in the tool's closed bodies of a kind along a move."""
     best = -np.inf
     for piece in moves.bodies.piece[moves.bodies.piece[:, body.KIND] == kind]:
         low, high, run = 0.0, 1.0, piece[[body.CLOSED_FIRST, body.CLOSED_LAST]].astype(int)
@@ -186,7 +186,9 @@ def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
         )
         assert min(deepest, DEEP) <= max(measured, 0.0) + bound
         if measured > -np.inf:
-            assert min(measured, DEEP) <= attained(moves, kind, move, touch.place[0, kind]) + 1e-5
+            assert (
+                min(measured, DEEP) <= attained(moves, kind, move, touch.position[0, kind]) + 1e-5
+            )
 
 
 @settings(deadline=None, max_examples=60, phases=[Phase.explicit, Phase.generate])
@@ -194,7 +196,7 @@ def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
     form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES, room=st.integers(1, 3)
 )
 def test_a_search_without_room_for_its_open_tasks_errs_deep(form, move, triangles, room):
-    moves, row = moves_for(FORMS[form], move), np.zeros(tool_motion.WAY_COLUMNS)
+    moves, row = moves_for(FORMS[form], move), np.zeros(tool_motion.MOTION_COLUMNS)
     tool_motion.fill_tool_motion(
         *(
             a[1]

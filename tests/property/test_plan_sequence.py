@@ -19,7 +19,7 @@ def job_lists(draw) -> list[OrderedOperation]:
             id=f"op-{n}",
             tool=draw(st.sampled_from("ABC")),
             stage=draw(st.integers(0, 3)),
-            place=(draw(st.floats(-9, 9)), 0.0),
+            position=(draw(st.floats(-9, 9)), 0.0),
             after=frozenset(f"op-{w}" for w in waits[n]),
         )
         for n in range(count)

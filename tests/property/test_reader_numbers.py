@@ -187,7 +187,7 @@ def check_judged(program: Program) -> None:
     verdict = judged(program)
     assert not list(not_finite(verdict))
     stands = any(
-        s.spindle_stands and (s.path.motion != Motion.RAPID).any() for s in program.sections
+        s.spindle_stopped and (s.path.motion != Motion.RAPID).any() for s in program.sections
     )
     slow = any(b.time.max(initial=0.0) > LONGEST_BLOCK for b in verdict.blocks)
     far = any(np.ptp(s.path.position, axis=0).max() > 600.0 for s in program.sections)

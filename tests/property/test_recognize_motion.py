@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from blockparts import BlockPart, terrace
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Recognition
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.panel import PanelFamily
 from trunnion.settings import choose
 
@@ -30,7 +30,9 @@ def frames(draw: st.DrawFn) -> Frame:
 
 
 def recognized(part: BlockPart) -> Recognition:
-    return PanelFamily().recognize(part.graph(), part, choose(PanelFamily.settings, {}), QUIET)
+    return PanelFamily().recognize(
+        part.graph(), part, choose(PanelFamily.settings, {}), NO_PROGRESS
+    )
 
 
 def summary(found: Recognition) -> list[tuple[object, ...]]:
@@ -75,5 +77,5 @@ def test_a_scaled_part_has_the_same_features(factor: float) -> None:
         PanelFamily.settings,
         {"rib_width": 12.0 * factor if factor < 16.0 else 200.0, "hole_diameter": 30.0},
     )
-    found = PanelFamily().recognize(part.graph(), part, words, QUIET)
+    found = PanelFamily().recognize(part.graph(), part, words, NO_PROGRESS)
     assert summary(found) == summary(AS_DRAWN)

@@ -38,7 +38,7 @@ def tips(draw):
 
 def agrees(form, section, points, bound):
     most = np.full(len(points), 15.0)
-    left, nearest = Sweep.of(moves_of([section]), 15.0).left(points, most, threads=1)
+    left, nearest = Sweep.of(moves_of([section]), 15.0).residual(points, most, threads=1)
     true = np.minimum([PLAIN[form].nearest(section, 1, p) for p in points], most)
     if form == "form":
         # Inside of several bodies the deepest one counts, which is less deep than their union.

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill
 from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Motion, Toolpath
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.plane.floor import FloorSettings, floor
 from trunnion.toolpath.plane.rough import RoughSettings, rough
 from trunnion.toolpath.plane.wall import WallSettings, wall
@@ -57,7 +57,7 @@ def test_roughing_stays_in_its_room_clears_it_and_never_crosses_material_at_rapi
     room = plan.offset(-tool.radius - 0.3)
     assume(bool(room))
     drive = closed_pocket(plan, 8.0, cutter[1], wall_allowance=0.3, floor_allowance=0.3)
-    path = rough(drive, tool, cutting(5.0, width), STOCK, SETUP, RoughSettings(), QUIET).path
+    path = rough(drive, tool, cutting(5.0, width), STOCK, SETUP, RoughSettings(), NO_PROGRESS).path
     assert room.signed_distance(lowered(path)).min() > -2e-3
     milled = Milled((-5, -5), (75, 55), 0.0, cell=1.0).cut(path, tool)
     flat = room.offset(tool.radius - tool.corner_radius - 0.05)
@@ -76,7 +76,7 @@ def test_floor_and_wall_stay_in_their_room(plan: Region, cutter: tuple[float, fl
     assume(bool(plan.offset(-tool.radius - 0.5)))
     drive = closed_pocket(plan, 8.0, cutter[1])
     for strategy, chosen in ((floor, FloorSettings()), (wall, WallSettings())):
-        path = strategy(drive, tool, cutting(5.0, 4.0), STOCK, SETUP, chosen, QUIET).path
+        path = strategy(drive, tool, cutting(5.0, 4.0), STOCK, SETUP, chosen, NO_PROGRESS).path
         assert room.signed_distance(lowered(path)).min() > -2e-3
 
 
@@ -88,7 +88,7 @@ def test_arcs_keep_their_radius_and_no_block_goes_nowhere(
     tool = mill(*cutter)
     assume(bool(plan.offset(-tool.radius - 0.3)))
     drive = closed_pocket(plan, 8.0, cutter[1], wall_allowance=0.3)
-    path = rough(drive, tool, cutting(5.0, 4.0), STOCK, SETUP, RoughSettings(), QUIET).path
+    path = rough(drive, tool, cutting(5.0, 4.0), STOCK, SETUP, RoughSettings(), NO_PROGRESS).path
     arcs = path.motion >= Motion.ARC_CW
     radii = [
         np.linalg.norm(p[arcs, :2] - path.centre[arcs, :2], axis=1)

@@ -100,10 +100,10 @@ def check_output(folder: Path) -> None:
         raise BadInput(f"{folder}: can't be written to: no permission in {there}")
 
 
-def words_of(chosen: argparse.Namespace) -> dict[str, str]:
+def words_of(options: argparse.Namespace) -> dict[str, str]:
     """Return the settings given with `--set` by key."""
     pairs = {}
-    for word in chosen.words:
+    for word in options.words:
         key, equals, value = word.partition("=")
         if not equals or not key.strip():
             raise BadCall(f"--set wants KEY=VALUE, not {word}")
@@ -111,9 +111,9 @@ def words_of(chosen: argparse.Namespace) -> dict[str, str]:
     return pairs
 
 
-def progress_of(chosen: argparse.Namespace) -> Progress:
+def progress_of(options: argparse.Namespace) -> Progress:
     """Return progress that shows itself on a terminal's standard error, one line rewritten, and nothing elsewhere."""
-    if chosen.quiet or not sys.stderr.isatty():
+    if options.quiet or not sys.stderr.isatty():
         return Progress()
 
     def show(fraction: float, text: str) -> None:
@@ -123,26 +123,26 @@ def progress_of(chosen: argparse.Namespace) -> Progress:
     return Progress(show)
 
 
-def open_session(chosen: argparse.Namespace, until: str | None) -> tuple[Engine, Session]:
+def open_session(options: argparse.Namespace, until: str | None) -> tuple[Engine, Session]:
     """Return the engine and the session of the part, with every step up to `until` done."""
     from trunnion.pipeline import Engine
 
-    if chosen.user_folder is not None and not chosen.user_folder.is_dir():
+    if options.user_folder is not None and not options.user_folder.is_dir():
         raise BadInput(
-            f"{chosen.user_folder}: no such folder of tools, materials, machines and plans"
+            f"{options.user_folder}: no such folder of tools, materials, machines and plans"
         )
-    engine = Engine(chosen.user_folder)
-    progress = progress_of(chosen)
-    session = engine.open(chosen.part, solid=chosen.solid, progress=progress.part(0.0, 0.1))
-    session = engine.with_choices(session, words_of(chosen))
-    if chosen.fixtures:
-        session = engine.with_fixtures(session, chosen.fixtures, progress)
+    engine = Engine(options.user_folder)
+    progress = progress_of(options)
+    session = engine.open(options.part, solid=options.solid, progress=progress.part(0.0, 0.1))
+    session = engine.with_choices(session, words_of(options))
+    if options.fixtures:
+        session = engine.with_fixtures(session, options.fixtures, progress)
     if until is not None:
         session = engine.run(session, until, progress.part(0.1, 1.0))
     return engine, session
 
 
-def add_by_hand(made: argparse.ArgumentParser) -> None:
+def add_manual_edits(made: argparse.ArgumentParser) -> None:
     """Add the options that change groups of patches by hand."""
     made.add_argument(
         "--local",
@@ -161,18 +161,18 @@ def add_by_hand(made: argparse.ArgumentParser) -> None:
     )
 
 
-def with_by_hand(chosen: argparse.Namespace, engine: Engine, session: Session) -> Session:
-    """Return the session with the changes that the options of `add_by_hand` say."""
+def with_manual_edits(options: argparse.Namespace, engine: Engine, session: Session) -> Session:
+    """Return the session with the changes that the options of `add_manual_edits` say."""
     from trunnion.pipeline.planning.patches import with_local, with_moved
 
-    for word in chosen.moves:
+    for word in options.moves:
         faces, equals, group = word.partition("=")
         if not equals or not all(f.isdecimal() for f in listed(faces)):
             raise BadCall(f"--move wants FACE,...=ID, not {word}")
         session = with_moved(
             engine, session, map(int, listed(faces)), "" if group == "new" else group
         )
-    for ids, value in ((chosen.local, True), (chosen.not_local, False)):
+    for ids, value in ((options.local, True), (options.not_local, False)):
         session = with_local(session, listed(ids), value) if ids else session
     return session
 
@@ -191,9 +191,9 @@ def show_json(data: Any) -> None:
     print(json.dumps(data, indent=1, ensure_ascii=False))
 
 
-def show_findings(chosen: argparse.Namespace, findings: Iterable[Finding]) -> None:
+def show_findings(options: argparse.Namespace, findings: Iterable[Finding]) -> None:
     """Print findings on standard error, one a line, unless told to be quiet by --quiet or to print JSON; what only informs is counted."""
-    if chosen.quiet or chosen.json:
+    if options.quiet or options.json:
         return
     notes = 0
     for finding in findings:

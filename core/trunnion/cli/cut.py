@@ -43,34 +43,34 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Make the cut, write the project and report which faces there are now."""
     from trunnion.geometry.cut import curve_cut, plane_cut
     from trunnion.pipeline.engine import PROJECT_SUFFIX
     from trunnion.pipeline.planning.patches import with_cut
 
-    if (chosen.plane is None) == (not chosen.place):
+    if (options.plane is None) == (not options.place):
         raise BadCall("a cut wants --plane, or --place twice or more; not both")
-    if chosen.out.suffix.lower() != PROJECT_SUFFIX:
+    if options.out.suffix.lower() != PROJECT_SUFFIX:
         raise BadInput(
-            f"{chosen.out}: a cut is kept in a project; name it {chosen.out.stem}{PROJECT_SUFFIX}"
+            f"{options.out}: a cut is kept in a project; name it {options.out.stem}{PROJECT_SUFFIX}"
         )
-    check_output(chosen.out.parent)
-    engine, session = open_session(chosen, None)
+    check_output(options.out.parent)
+    engine, session = open_session(options, None)
     assert session.part is not None
     cut = (
-        plane_cut(chosen.face, tuple(chosen.plane[:3]), tuple(chosen.plane[3:]))
-        if chosen.plane
-        else curve_cut(chosen.face, tuple(tuple(p) for p in chosen.place))
+        plane_cut(options.face, tuple(options.plane[:3]), tuple(options.plane[3:]))
+        if options.plane
+        else curve_cut(options.face, tuple(tuple(p) for p in options.place))
     )
     after = with_cut(engine, session, cut)
     assert after.part is not None
-    made = [chosen.face, *range(session.part.n_faces + 1, after.part.n_faces + 1)]
-    engine.save(after, chosen.out)
-    if chosen.json:
-        show_json({"file": str(chosen.out), "faces": made})
+    made = [options.face, *range(session.part.n_faces + 1, after.part.n_faces + 1)]
+    engine.save(after, options.out)
+    if options.json:
+        show_json({"file": str(options.out), "faces": made})
     else:
         print(
-            f"face {chosen.face} is now {' and '.join(f'face {n}' for n in made)}; kept in {chosen.out}"
+            f"face {options.face} is now {' and '.join(f'face {n}' for n in made)}; kept in {options.out}"
         )
     return 0

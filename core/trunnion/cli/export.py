@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.cli.common import (
-    add_by_hand,
+    add_manual_edits,
     check_output,
     exit_code,
     listed,
@@ -15,7 +15,7 @@ from trunnion.cli.common import (
     part_command,
     show_findings,
     show_json,
-    with_by_hand,
+    with_manual_edits,
 )
 from trunnion.findings import BadInput
 
@@ -40,25 +40,25 @@ def add(commands: Any) -> None:
         metavar="FILE",
         help="file to write (.igs, .iges, .step, .stp)",
     )
-    add_by_hand(made)
+    add_manual_edits(made)
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Write the faces and report how many they are."""
     from trunnion.pipeline.planning.patches import export, tags_of
 
-    if not chosen.out.parent.is_dir():
-        raise BadInput(f"{chosen.out}: there is no folder {chosen.out.parent}")
-    check_output(chosen.out.parent)
-    engine, session = open_session(chosen, "recognize")
-    session = with_by_hand(chosen, engine, session)
-    what = listed(chosen.groups)
+    if not options.out.parent.is_dir():
+        raise BadInput(f"{options.out}: there is no folder {options.out.parent}")
+    check_output(options.out.parent)
+    engine, session = open_session(options, "recognize")
+    session = with_manual_edits(options, engine, session)
+    what = listed(options.groups)
     tags = tags_of(session, what)
-    export(engine, session, what, chosen.out)
-    if chosen.json:
-        show_json({"file": str(chosen.out), "groups": list(what), "faces": list(tags)})
+    export(engine, session, what, options.out)
+    if options.json:
+        show_json({"file": str(options.out), "groups": list(what), "faces": list(tags)})
     else:
-        print(f"{len(tags)} faces written to {chosen.out}")
-    show_findings(chosen, session.findings())
+        print(f"{len(tags)} faces written to {options.out}")
+    show_findings(options, session.findings())
     return exit_code(session.findings())

@@ -14,8 +14,8 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Open the window and stay in it until it is closed."""
     # The core imports nothing of the window; the name is looked up only here, when a person asks for it.
     app = import_module("trunnion_gui.app")
-    return int(app.main([chosen.part] if chosen.part else []))
+    return int(app.main([options.part] if options.part else []))

@@ -13,13 +13,13 @@ def add(commands: Any) -> None:
     part_command(commands, "info", "what is in a part file").set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the part's facts."""
-    _, session = open_session(chosen, None)
+    _, session = open_session(options, None)
     part = session.part
     assert part is not None
     size = [float(h - l) for l, h in zip(part.low, part.high, strict=True)]
-    if chosen.json:
+    if options.json:
         show_json(
             {
                 "part": part.name,
@@ -44,5 +44,5 @@ def run(chosen: argparse.Namespace) -> int:
         print(f"area    {part.area:.1f} mm2")
         print(f"volume  {part.volume:.1f} mm3")
         print(f"digest  {part.digest}")
-    show_findings(chosen, part.findings)
+    show_findings(options, part.findings)
     return exit_code(part.findings)

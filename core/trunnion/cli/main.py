@@ -39,7 +39,7 @@ class OneLineParser(argparse.ArgumentParser):
     """A parser whose complaint is one line on standard error."""
 
     def error(self, message: str) -> NoReturn:
-        """Say what is wrong with the call and leave with the exit code of a bad call."""
+        """Return what is wrong with the call and leave with the exit code of a bad call."""
         self.exit(BAD, f"{self.prog}: {message}; see '{self.prog} --help'\n")
 
 
@@ -60,12 +60,12 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: list[str] | None = None) -> int:
     """Run one command and return its exit code."""
     top = parser()
-    chosen = top.parse_args(arguments)
-    if chosen.command is None:
+    options = top.parse_args(arguments)
+    if options.command is None:
         top.print_help()
         return BAD
     try:
-        return int(chosen.run(chosen))
+        return int(options.run(options))
     except TrunnionError as reason:
         print(f"trunnion: {reason}", file=sys.stderr)
         return BAD

@@ -18,7 +18,7 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the settings of every step."""
     from trunnion.pipeline import Engine
     from trunnion.settings import declared
@@ -29,7 +29,7 @@ def run(chosen: argparse.Namespace) -> int:
         for group in all_groups
         for d in declared(group)
     ]
-    if chosen.json:
+    if options.json:
         show_json(
             [
                 {
@@ -46,7 +46,7 @@ def run(chosen: argparse.Namespace) -> int:
                 for step, d in groups
             ]
         )
-    elif chosen.markdown:
+    elif options.markdown:
         print(
             "# Settings\n\nEverything that `--set KEY=VALUE` and the panels can change; made by `make docs` from the declarations.\n"
         )

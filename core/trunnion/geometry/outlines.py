@@ -46,11 +46,11 @@ class Outlines:
             rows=np.repeat(np.arange(len(pieces)), times)[order],
         )
 
-    def within(self, places: Floats) -> Ints:
-        """Return `OUT`, `IN` or `NEAR` of `kernels.outline` (k,) for places (k, 2)."""
-        out = np.empty(len(places), np.int64)
-        places = np.ascontiguousarray(places, dtype=np.float64)
+    def within(self, positions: Floats) -> Ints:
+        """Return `OUT`, `IN` or `NEAR` of `kernels.outline` (k,) for positions (k, 2)."""
+        out = np.empty(len(positions), np.int64)
+        positions = np.ascontiguousarray(positions, dtype=np.float64)
         points_in_polygon_loop(
-            places, self.pieces, self.near, self.low, self.pitch, self.start, self.rows, out
+            positions, self.pieces, self.near, self.low, self.pitch, self.start, self.rows, out
         )
         return out

@@ -67,15 +67,15 @@ def box_intervals(low: Floats, high: Floats, start: Floats, direction: Floats) -
     """
     enter, leave = np.full(len(start), -np.inf), np.full(len(start), np.inf)
     for k in range(3):
-        place, (first, last) = start[:, k], (low[k], high[k])
+        position, (first, last) = start[:, k], (low[k], high[k])
         if direction[k] == 0.0:
-            inside = place >= first - tolerance.PARAMETRIC
-            inside &= place <= last + tolerance.PARAMETRIC
+            inside = position >= first - tolerance.PARAMETRIC
+            inside &= position <= last + tolerance.PARAMETRIC
             leave[~inside] = -np.inf
         else:
             near, far = (first, last) if direction[k] > 0.0 else (last, first)
-            np.maximum(enter, (near - place) / direction[k], out=enter)
-            np.minimum(leave, (far - place) / direction[k], out=leave)
+            np.maximum(enter, (near - position) / direction[k], out=enter)
+            np.minimum(leave, (far - position) / direction[k], out=leave)
     inside = leave > enter
     enter[~inside] = leave[~inside] = 0.0
     return Intervals(inside.astype(np.int64), enter[:, None], leave[:, None])
@@ -109,10 +109,10 @@ def paired(n: int, ray: Ints, along: Floats, sign: Ints) -> Intervals:
     kept = high - low > tolerance.PARAMETRIC
     low, high, owner = low[kept], high[kept], owner[kept]
     count = np.bincount(owner, minlength=n).astype(np.int64)
-    place = np.arange(len(owner)) - np.searchsorted(owner, owner)
+    position = np.arange(len(owner)) - np.searchsorted(owner, owner)
     shape = (n, max(1, int(count.max(initial=0))))
     lows, highs = np.zeros(shape), np.zeros(shape)
-    lows[owner, place], highs[owner, place] = low, high
+    lows[owner, position], highs[owner, position] = low, high
     return Intervals(count, lows, highs)
 
 
@@ -152,8 +152,8 @@ def _over(plan: Floats, triangles: Ints, at: Floats) -> tuple[Bools, Ints]:
         p, d = plan[first], plan[last] - plan[first]
         side = np.sign(d[:, 0] * (at[:, 1] - p[:, 1]) - d[:, 1] * (at[:, 0] - p[:, 0]))
         # On the edge: as a hair (e, e^2) beside.
-        beside = np.where(d[:, 1] != 0.0, -np.sign(d[:, 1]), np.sign(d[:, 0]))
-        side = np.where(side == 0.0, beside, side)
+        hair_side = np.where(d[:, 1] != 0.0, -np.sign(d[:, 1]), np.sign(d[:, 0]))
+        side = np.where(side == 0.0, hair_side, side)
         sides.append(np.where(swapped, -side, side))
     total = np.sum(sides, axis=0)
     return np.abs(total) == 3.0, np.sign(total).astype(np.int64)

@@ -64,8 +64,8 @@ def _some(outline: Floats, start: Floats, direction: Floats) -> Intervals:
     t = t[:, :used]
     there = np.isfinite(t[:, 1:])
     middle = np.where(there, 0.5 * (t[:, :-1] + np.where(there, t[:, 1:], 0.0)), 0.0)
-    places = start[:, None] + middle[:, :, None] * direction
-    inside = winding_numbers(half_plane(places.reshape(-1, 3)), *_lines(outline)) != 0
+    positions = start[:, None] + middle[:, :, None] * direction
+    inside = winding_numbers(half_plane(positions.reshape(-1, 3)), *_lines(outline)) != 0
     return joined(t, inside.reshape(middle.shape) & there)
 
 
@@ -76,8 +76,8 @@ def joined(t: Floats, inside: Bools) -> Intervals:
     count = begins.sum(axis=1).astype(np.int64)
     shape = (n, max(1, int(count.max(initial=0))))
     low, high = np.zeros(shape), np.zeros(shape)
-    place = np.arange(shape[1]) < count[:, None]
-    low[place], high[place] = t[begins], t[ends]
+    used = np.arange(shape[1]) < count[:, None]
+    low[used], high[used] = t[begins], t[ends]
     return Intervals(count, low, high)
 
 

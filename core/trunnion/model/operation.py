@@ -71,8 +71,8 @@ class CuttingData:
 
     def as_dict(self) -> dict[str, Any]:
         """Return the data as JSON has them."""
-        left_out = unwritten(self)
-        return {name: value for name, value in asdict(self).items() if name not in left_out}
+        omitted = unwritten(self)
+        return {name: value for name, value in asdict(self).items() if name not in omitted}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -41,7 +41,7 @@ from trunnion.part.topology.measure import open_edges
 
 T = TypeVar("T")
 REACH = 1.0
-"""mm that a place of a drawn cut may be away from the face: a click on a coarse picture's triangles is."""
+"""mm that a position of a drawn cut may be away from the face: a click on a coarse picture's triangles is."""
 
 
 def divided(part: Part, cut: Cut) -> Part:
@@ -91,9 +91,9 @@ def divided(part: Part, cut: Cut) -> Part:
 
 def _pieces(face: Shape, cut: Cut, where: str) -> list[Shape]:
     """Return the pieces of a face, those that keep the tag's side first, the larger first on either side."""
-    places = np.array(cut.places, dtype=np.float64).reshape(-1, 3)
-    way = None if cut.is_plane else DrawnCurve(face, places, REACH, where)
-    tool = _plane(face, places[0], np.array(cut.normal)) if way is None else way.edge()
+    positions = np.array(cut.places, dtype=np.float64).reshape(-1, 3)
+    curve = None if cut.is_plane else DrawnCurve(face, positions, REACH, where)
+    tool = _plane(face, positions[0], np.array(cut.normal)) if curve is None else curve.edge()
     pieces = faces_of(_split(face, [tool]).Shape())
     if len(pieces) < 2:
         raise BadInput(
@@ -101,10 +101,12 @@ def _pieces(face: Shape, cut: Cut, where: str) -> list[Shape]:
             + ("move or turn the plane" if cut.is_plane else "draw it from edge to edge, or closed")
         )
     measured = [_measured(p) for p in pieces]
-    if way is None:
-        stays = [float((centre - places[0]) @ np.array(cut.normal)) < 0.0 for _, centre in measured]
+    if curve is None:
+        stays = [
+            float((centre - positions[0]) @ np.array(cut.normal)) < 0.0 for _, centre in measured
+        ]
     else:
-        stays = [way.is_left(p) for p in pieces]
+        stays = [curve.is_left(p) for p in pieces]
     order = sorted(
         range(len(pieces)),
         key=lambda k: (
@@ -116,7 +118,7 @@ def _pieces(face: Shape, cut: Cut, where: str) -> list[Shape]:
     return [pieces[k] for k in order]
 
 
-def _plane(face: Shape, place: Floats, normal: Floats) -> Shape:
+def _plane(face: Shape, position: Floats, normal: Floats) -> Shape:
     """Return a plane face that is larger than the face to be cut."""
     box = Bnd_Box()
     BRepBndLib.Add_s(face, box)
@@ -124,7 +126,7 @@ def _plane(face: Shape, place: Floats, normal: Floats) -> Shape:
     low, high = np.array([x0, y0, z0]), np.array([x1, y1, z1])
     normal = normal / np.linalg.norm(normal)
     middle = 0.5 * (low + high)
-    foot = middle - ((middle - place) @ normal) * normal
+    foot = middle - ((middle - position) @ normal) * normal
     reach = float(np.linalg.norm(high - low))
     plane = gp_Pln(gp_Pnt(*foot.tolist()), gp_Dir(*normal.tolist()))
     return BRepBuilderAPI_MakeFace(plane, -reach, reach, -reach, reach).Face()
@@ -183,8 +185,8 @@ def _measured(piece: Shape) -> tuple[float, Floats]:
 def _tags(shape: Shape, tagged: dict[int, Shape]) -> tuple[int, ...]:
     """Return the tag of each of a shape's own faces, in their order; fewer when one has none."""
     index = face_index(shape)
-    places = {index.FindIndex(face): tag for tag, face in tagged.items()}
-    return tuple(places[n] for n in range(1, index.Extent() + 1) if n in places)
+    positions = {index.FindIndex(face): tag for tag, face in tagged.items()}
+    return tuple(positions[n] for n in range(1, index.Extent() + 1) if n in positions)
 
 
 def _inherited(words: Mapping[int, T], tags: list[int]) -> dict[int, T]:

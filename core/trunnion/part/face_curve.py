@@ -29,31 +29,31 @@ _STEP = 0.01
 """Share of the face's parameters by which an end is led on until it is outside."""
 _MORE = 3
 """Points before and after a curve round the surface that make it run on smoothly where it closes."""
-_BESIDE = 1e-4
+_PROBE = 1e-4
 """Share of the face's parameters beside the curve at which pieces are looked up."""
-_ASKED = 64
+_SAMPLES = 64
 """Points along the curve beside which pieces are looked up."""
 
 
 class DrawnCurve:
     """The curve on the surface of one face through given points (k, 3) in order; one that returns to its start is closed.
 
-    Raises `BadInput` for a place that is farther than `reach` from the surface.
+    Raises `BadInput` for a position that is farther than `reach` from the surface.
     """
 
-    def __init__(self, face: Shape, places: Floats, reach: float, where: str) -> None:
+    def __init__(self, face: Shape, positions: Floats, reach: float, where: str) -> None:
         self._face = face
         self._surface = BRep_Tool.Surface_s(face)
         self._turned = -1.0 if face.Orientation() == TopAbs_REVERSED else 1.0
         u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
         self._low, self._size = np.array([u0, v0]), np.array([u1 - u0, v1 - v0])
-        at = self._brought(places, reach, where)
-        steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+        at = self._brought(positions, reach, where)
+        steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
         kept = np.concatenate([[True], steps > tolerance.COINCIDENT])
         at, steps = at[kept], steps[kept[1:]]
         if len(at) < 2:
             raise BadInput(f"{where}: the places of a drawn cut fall together")
-        is_back = bool(np.linalg.norm(places[-1] - places[0]) < tolerance.COINCIDENT)
+        is_back = bool(np.linalg.norm(positions[-1] - positions[0]) < tolerance.COINCIDENT)
         is_loop = is_back and bool(
             np.abs(at[-1] - at[0]).max() < tolerance.PARAMETRIC * self._size.max()
         )
@@ -81,7 +81,7 @@ class DrawnCurve:
         """Return whether a piece of the face lies left of the path, seen from outside."""
         inside = BRepTopAdaptor_FClass2d(piece, tolerance.COINCIDENT)
         votes = 0
-        for share in (np.arange(_ASKED) + 0.5) / _ASKED:
+        for share in (np.arange(_SAMPLES) + 0.5) / _SAMPLES:
             t = self._curve.FirstParameter() + share * (
                 self._curve.LastParameter() - self._curve.FirstParameter()
             )
@@ -93,17 +93,17 @@ class DrawnCurve:
                     along.X() * self._size[1] / self._size[0],
                 ]
             )
-            left *= _BESIDE / max(np.abs(left / self._size).max(), tolerance.PARAMETRIC)
+            left *= _PROBE / max(np.abs(left / self._size).max(), tolerance.PARAMETRIC)
             votes += inside.Perform(gp_Pnt2d(point.X() + left[0], point.Y() + left[1])) == TopAbs_IN
             votes -= inside.Perform(gp_Pnt2d(point.X() - left[0], point.Y() - left[1])) == TopAbs_IN
         return votes > 0
 
-    def _brought(self, places: Floats, reach: float, where: str) -> Floats:
-        """Return the surface's parameters (k, 2) nearest to the places, without jumps on surfaces that close on themselves."""
+    def _brought(self, positions: Floats, reach: float, where: str) -> Floats:
+        """Return the surface's parameters (k, 2) nearest to the positions, without jumps on surfaces that close on themselves."""
         nearest = ShapeAnalysis_Surface(self._surface)
-        at = np.empty((len(places), 2))
-        for k, place in enumerate(places.tolist()):
-            found = nearest.ValueOfUV(gp_Pnt(*place), tolerance.COINCIDENT)
+        at = np.empty((len(positions), 2))
+        for k, position in enumerate(positions.tolist()):
+            found = nearest.ValueOfUV(gp_Pnt(*position), tolerance.COINCIDENT)
             if nearest.Gap() > reach:
                 gap, there = nearest.Gap(), nearest.Value(found)
                 raise BadInput(
@@ -140,13 +140,13 @@ class DrawnCurve:
             at, steps = at[::-1], steps[::-1]
         return at, steps
 
-    def _outside(self, end: Floats, way: Floats) -> Floats | None:
+    def _outside(self, end: Floats, direction: Floats) -> Floats | None:
         """Return the position (2,) straight on from an end of the way that lies outside the face, None when the end does already."""
         inside: Any = BRepTopAdaptor_FClass2d(self._face, tolerance.COINCIDENT)
         if inside.Perform(gp_Pnt2d(*end.tolist())) == TopAbs_OUT:
             return None
         limits = self._limits()
-        step = way / max(np.abs(way / self._size).max(), tolerance.PARAMETRIC) * _STEP
+        step = direction / max(np.abs(direction / self._size).max(), tolerance.PARAMETRIC) * _STEP
         at, beyond = end, 0.0
         while beyond < _BEYOND:
             further = np.clip(at + step, *limits)
@@ -185,13 +185,13 @@ def _around(at: Floats, along: Floats) -> Any:
 
 
 def _through(at: Floats, along: Floats, is_loop: bool) -> Any:
-    """Return the plane curve through places (k, 2) at the parameters (k,), or None."""
-    places = TColgp_HArray1OfPnt2d(1, len(at) - is_loop)
+    """Return the plane curve through positions (k, 2) at the parameters (k,), or None."""
+    positions = TColgp_HArray1OfPnt2d(1, len(at) - is_loop)
     for n in range(len(at) - is_loop):
-        places.SetValue(n + 1, gp_Pnt2d(*at[n].tolist()))
+        positions.SetValue(n + 1, gp_Pnt2d(*at[n].tolist()))
     parameters = TColStd_HArray1OfReal(1, len(along))
     for n, t in enumerate(along.tolist(), 1):
         parameters.SetValue(n, t)
-    made = Geom2dAPI_Interpolate(places, parameters, is_loop, tolerance.PARAMETRIC)
+    made = Geom2dAPI_Interpolate(positions, parameters, is_loop, tolerance.PARAMETRIC)
     made.Perform()
     return made.Curve() if made.IsDone() else None

@@ -21,7 +21,7 @@ from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.plane.region import Region
 from trunnion.geometry.surface.curvature import FaceCurvature
 from trunnion.part.topology.identity import Shape, faces_of
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.topology.boundary import BoundaryCurves
@@ -94,7 +94,7 @@ class Part:
         self._bounding: BoundaryCurves | None = None
         self._bends: dict[int, FaceCurvature] = {}
         self._slicer: Any = None
-        self._progress = QUIET
+        self._progress = NO_PROGRESS
 
     path = property(lambda self: self.facts.path, doc="Where the part was read from.")
     name = property(lambda self: self.facts.name, doc="The file's name without its suffix.")

@@ -14,7 +14,7 @@ from trunnion.geometry.cut import Cut
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.session import PartInfo
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.shop import Shop
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Context:
             findings=tuple(p.findings),
         )
 
-    def skin(self, chord: float = tolerance.SKIN_CHORD, progress: Progress = QUIET) -> Skin:
+    def skin(self, chord: float = tolerance.SKIN_CHORD, progress: Progress = NO_PROGRESS) -> Skin:
         """Return the part's skin in its own coordinates within a chord error (mm), as fine as finishing needs it unless said; kept."""
         if chord not in self._skins:
             from trunnion.part.shape.skin import skin_of
@@ -77,7 +77,7 @@ class Contexts:
     def __init__(self, part: Part, shop: Shop) -> None:
         self._made: dict[tuple[Cut, ...], Context] = {(): Context(part, shop)}
 
-    def after(self, cuts: tuple[Cut, ...], progress: Progress = QUIET) -> Context:
+    def after(self, cuts: tuple[Cut, ...], progress: Progress = NO_PROGRESS) -> Context:
         """Return the context of the part after some cuts; raise `BadInput` when one of them can't be made."""
         if cuts not in self._made:
             before = self.after(cuts[:-1], progress)

@@ -24,7 +24,7 @@ from trunnion.pipeline.step import Step
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
 from trunnion.plan.repair.alternatives import fixes_after
 from trunnion.plan.repair.contract import RepairJob, applied
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import load_shop
 from trunnion.verify.settings import ProofSettings
@@ -51,7 +51,7 @@ class Engine:
         self._playback: Playback | None = None
 
     def open(
-        self, path: str | Path, *, solid: int | None = None, progress: Progress = QUIET
+        self, path: str | Path, *, solid: int | None = None, progress: Progress = NO_PROGRESS
     ) -> Session:
         """Return a new session of a part file (STEP, IGES, gzipped STEP) or the saved session of a project file."""
         path, progress = Path(path), progress.afresh()
@@ -100,7 +100,11 @@ class Engine:
         return self._file
 
     def attach(
-        self, session: Session, data: bytes = b"", suffix: str = "", progress: Progress = QUIET
+        self,
+        session: Session,
+        data: bytes = b"",
+        suffix: str = "",
+        progress: Progress = NO_PROGRESS,
     ) -> None:
         """Take over a session after a restart: from the part file's bytes when given, else from where the part was read."""
         if session.part is None:
@@ -119,13 +123,13 @@ class Engine:
             raise BadCall("no part is open: open a STEP or IGES file first")
         return self._contexts.after(())
 
-    def context_of(self, session: Session, progress: Progress = QUIET) -> Context:
+    def context_of(self, session: Session, progress: Progress = NO_PROGRESS) -> Context:
         """Return the part after the session's cuts, and the shop; raises `BadCall` while no part is open."""
         if self._contexts is None:
             return self.context
         return self._contexts.after(session.cuts, progress)
 
-    def mesh(self, session: Session, progress: Progress = QUIET) -> Mesh:
+    def mesh(self, session: Session, progress: Progress = NO_PROGRESS) -> Mesh:
         """Return the triangles of the part, with the tag of each one's face."""
         progress = progress.afresh()
         part = self.context_of(session, progress).part
@@ -147,7 +151,7 @@ class Engine:
             for group in groups
             for d in declared(group)
         }
-        chosen: dict[str, Value] = {}
+        values: dict[str, Value] = {}
         for key, value in words.items():
             if key not in known:
                 near = [k for k in known if k.rsplit(".", 1)[-1] == key.rsplit(".", 1)[-1]]
@@ -159,11 +163,11 @@ class Engine:
                     )
                     raise BadInput(f"unknown setting {key}; {advice}")
                 key = near[0]
-            chosen[key] = known[key].parse(value)
-        return replace(session, choices={**session.choices, **chosen})
+            values[key] = known[key].parse(value)
+        return replace(session, choices={**session.choices, **values})
 
     def with_cuts(
-        self, session: Session, cuts: tuple[Cut, ...], progress: Progress = QUIET
+        self, session: Session, cuts: tuple[Cut, ...], progress: Progress = NO_PROGRESS
     ) -> Session:
         """Return the session with its part's faces divided by cuts, in their order; raise `BadInput` when one of them can't be made."""
         after = replace(session, cuts=cuts)
@@ -173,7 +177,7 @@ class Engine:
         )
 
     def with_fixtures(
-        self, session: Session, words: Sequence[str], progress: Progress = QUIET
+        self, session: Session, words: Sequence[str], progress: Progress = NO_PROGRESS
     ) -> Session:
         """Return the session with the fixtures of some files (`FILE`, or `SETUP=FILE` for one setup) in place of those it had.
 
@@ -212,7 +216,7 @@ class Engine:
             found[step.name] = state if upstream or state == "empty" else "stale"
         return found
 
-    def _state(self, session: Session, step: Step, _progress: Progress = QUIET) -> str:
+    def _state(self, session: Session, step: Step, _progress: Progress = NO_PROGRESS) -> str:
         record = session.records.get(step.name)
         if record is None or not step.done(session):
             return "empty"
@@ -220,7 +224,9 @@ class Engine:
             return "stale"
         return "problem" if has_errors(record.findings) else "done"
 
-    def run(self, session: Session, until: str = STEPS[-1], progress: Progress = QUIET) -> Session:
+    def run(
+        self, session: Session, until: str = STEPS[-1], progress: Progress = NO_PROGRESS
+    ) -> Session:
         """Return the session with every stale step up to `until` computed again; the one given stays as it was."""
         last, progress = STEPS.index(step_named(until).name), progress.afresh()
         for n, step in enumerate(progress.each(STEP_TABLE[: last + 1])):
@@ -232,7 +238,9 @@ class Engine:
         progress.at(1.0, "done")
         return session
 
-    def playback(self, session: Session, cell: float = 0.0, progress: Progress = QUIET) -> Timeline:
+    def playback(
+        self, session: Session, cell: float = 0.0, progress: Progress = NO_PROGRESS
+    ) -> Timeline:
         """Take up a plan for playback and return its blocks over time; `moment` then shows its stock."""
         from trunnion.pipeline.proof.playback import Playback
 
@@ -242,7 +250,11 @@ class Engine:
         return self._playback.timeline
 
     def moment(
-        self, key: str, position: float, seconds: float = float("inf"), progress: Progress = QUIET
+        self,
+        key: str,
+        position: float,
+        seconds: float = float("inf"),
+        progress: Progress = NO_PROGRESS,
     ) -> Moment:
         """Return the stock of the plan that is played (by its timeline's key) at a position, or on the way there after some seconds."""
         if self._playback is None or self._playback.timeline.key != key:
@@ -251,24 +263,24 @@ class Engine:
         with compiling(progress):
             return self._playback.towards(position, seconds, progress)
 
-    def deviation_map(self, session: Session, progress: Progress = QUIET) -> DeviationMap:
+    def deviation_map(self, session: Session, progress: Progress = NO_PROGRESS) -> DeviationMap:
         """Return the deviation of the finished part as triangles to be drawn; raise `BadCall` before a proof."""
         from trunnion.report.deviation import deviation_map
 
         if session.verdict is None:
             raise BadCall("nothing is proven yet: verify first")
-        chosen = checked(choose(ProofSettings, session.choices))
+        values = checked(choose(ProofSettings, session.choices))
         progress = progress.afresh()
         mesh = self.mesh(session, progress.part(0.0, 0.2))
         return deviation_map(
             mesh,
             session.verdict.deviation,
-            chosen.tolerance,
-            chosen.allowance,
+            values.tolerance,
+            values.allowance,
             progress.part(0.2, 1.0),
         )
 
-    def save(self, session: Session, path: str | Path, progress: Progress = QUIET) -> None:
+    def save(self, session: Session, path: str | Path, progress: Progress = NO_PROGRESS) -> None:
         """Write the project file, whole or not at all."""
         from trunnion.store.project import save_project
 
@@ -282,7 +294,7 @@ class Engine:
         *,
         name: str = "",
         date: str = "",
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> tuple[str, ...]:
         """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
         from trunnion.pipeline.writing import name_of, write_documents

@@ -19,7 +19,7 @@ from trunnion.pipeline.context import Context
 from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
-from trunnion.pipeline.planning.manual_edits import with_features_by_hand, with_operations_by_hand
+from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
 from trunnion.pipeline.planning.scene import SessionContext
 from trunnion.pipeline.proof.posted_programs import prove_session
 from trunnion.pipeline.repair.findings import repair_findings
@@ -94,7 +94,7 @@ def _route_settings() -> tuple[type, ...]:
 
 def _recognize(session: Session, context: Context, progress: Progress) -> Result:
     found = replace(recognised(session, context, progress), face_area=context.part.graph().area)
-    kept = with_features_by_hand(session.recognition, found)
+    kept = with_manual_features(session.recognition, found)
     after = replace(session, recognition=kept)
     return Result(
         session=after if kept is found else measured_anew(after, context), findings=kept.findings
@@ -109,9 +109,9 @@ def measured_anew(session: Session, context: Context) -> Session:
     )
     if not isinstance(family, Measuring):
         return session
-    chosen: Any = checked(choose(family.settings, session.choices))
+    settings: Any = checked(choose(family.settings, session.choices))
     return replace(
-        session, recognition=family.measured(found, context.part.graph(), context.part, chosen)
+        session, recognition=family.measured(found, context.part.graph(), context.part, settings)
     )
 
 
@@ -168,7 +168,7 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
             progress=progress,
         )
     )
-    process = with_operations_by_hand(session.process, process)
+    process = with_manual_operations(session.process, process)
     return Result(
         session=replace(session, setups=setups, process=process), findings=process.findings
     )
@@ -237,7 +237,7 @@ def _operations_without_data(session: Session) -> tuple[Any, ...]:
     )
 
 
-def _strategies_chosen(session: Session) -> tuple[Any, ...]:
+def _strategy_settings(session: Session) -> tuple[Any, ...]:
     """Return what is chosen for the strategies in use: it says how large an engagement each can meet."""
     return tuple(checked(choose(group, session.choices)) for group in _strategies_used(session))
 
@@ -301,7 +301,7 @@ STEP_TABLE: tuple[Step, ...] = (
         reads=lambda s, b: (
             _record_key(s, "route"),
             _operations_without_data(s),
-            _strategies_chosen(s),
+            _strategy_settings(s),
             b.shop.digest,
         ),
         done=lambda s: s.process is not None,

@@ -26,7 +26,7 @@ from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
 from trunnion.toolpath.contract import ToolAxis
-from trunnion.toolpath.motion.reorient import moved_over, swing_of
+from trunnion.toolpath.motion.reorient import clearance_sphere, moved_over
 
 DRIVEN = 0.2
 """Share of an operation's progress for the geometry that drives it."""
@@ -89,10 +89,10 @@ def _make_one(
     session: Session, planner: Planner, scene: SetupScene, operation: Operation, progress: Progress
 ) -> OperationPath:
     strategy, cutter = registry.get(STRATEGIES, operation.strategy), operation.cutter
-    chosen = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
+    settings = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
     needs = DriveNeeds(
         drive=strategy.drive,
-        leans=strategy.tool_axis(chosen) is ToolAxis.LEANING,
+        leans=strategy.tool_axis(settings) is ToolAxis.LEANING,
         finds_rest=strategy.finds_rest,
     )
     try:
@@ -105,10 +105,10 @@ def _make_one(
         )
         key = digest(
             operation.strategy,
-            driven.told,
+            driven.identity,
             operation.tool,
             operation.data,
-            chosen,
+            settings,
             stock.digest,
             setup,
             before,
@@ -129,23 +129,23 @@ def _make_one(
                 operation.data,
                 stock,
                 setup,
-                chosen,
+                settings,
                 progress.part(DRIVEN, 1.0),
             )
-            swing = swing_of(scene.blank, replace(scene.setup, fixtures=scene.fixtures))
-            path = moved_over(turned(planned.path, setup.frame, scene.setup.frame), before, swing)
+            sphere = clearance_sphere(scene.blank, replace(scene.setup, fixtures=scene.fixtures))
+            path = moved_over(turned(planned.path, setup.frame, scene.setup.frame), before, sphere)
             kept = OperationPath(
                 operation=operation.id, path=path, findings=tuple(planned.findings), key=key
             )
     except Refused as reason:
-        left = error(
+        refusal = error(
             "toolpath.refused",
             str(reason),
             operation.id,
             operation.feature,
             fix=Fix(kind="tool", operation=operation.id, reason="toolpath.refused"),
         )
-        return OperationPath(operation=operation.id, findings=(left,))
+        return OperationPath(operation=operation.id, findings=(refusal,))
     if len(kept.path):
         scene.sides.cut(
             setup,

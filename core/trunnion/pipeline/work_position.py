@@ -11,11 +11,11 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.shop.kinematics import Places, WorkPosition
-from trunnion.toolpath.motion.reorient import swing_of
+from trunnion.shop.kinematics import WorkPosition, WorkPositions
+from trunnion.toolpath.motion.reorient import clearance_sphere
 
 
-def work_positions_of(session: Session, machines: Mapping[str, Machine]) -> Places:
+def work_positions_of(session: Session, machines: Mapping[str, Machine]) -> WorkPositions:
     """Return where the work of every setup stands; setups on machines that the catalogue doesn't know are left out."""
     if session.blank is None:
         return {}
@@ -30,6 +30,6 @@ def work_positions_of(session: Session, machines: Mapping[str, Machine]) -> Plac
 def work_position_of(blank: Blank, setup: Setup, machine: Machine) -> WorkPosition:
     """Return where a setup's work stands: the middle of the blank's underside lies on the middle of the table."""
     low, high = blank.box_in(setup.frame)
-    swing = swing_of(blank, setup)
+    sphere = clearance_sphere(blank, setup)
     foot = np.array([*(0.5 * (low + high))[:2], low[2]])
-    return WorkPosition(machine=machine, foot=foot, centre=swing.centre, radius=swing.radius)
+    return WorkPosition(machine=machine, foot=foot, centre=sphere.centre, radius=sphere.radius)

@@ -77,7 +77,7 @@ class RouteJob:
     choices: Mapping[str, Value]
     progress: Progress
 
-    def chosen(self, group: type[T]) -> T:
+    def settings_of(self, group: type[T]) -> T:
         """Return a group of settings as chosen; raise `BadInput` for a value that is not allowed."""
         return checked(choose(group, self.choices))
 
@@ -119,12 +119,12 @@ class Drive(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OperationDrive:
-    """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `told`, what a digest is made of that tells the
-    drive from others: the drive itself, or its digest, with all else that its queries depend on."""
+    """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `identity`, what a digest is made of that tells
+    the drive from others: the drive itself, or its digest, with all else that its queries depend on."""
 
     setup: Setup
     drive: Drive
-    told: Any
+    identity: Any
 
 
 class Planner(Protocol):

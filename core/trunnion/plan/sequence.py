@@ -1,4 +1,4 @@
-"""The order of operations: what must come before is done before, tools change as seldom as that allows, ways between are short."""
+"""The order of operations: what must come before is done before, tools change as seldom as that allows, paths between are short."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrderedOperation:
-    """What is ordered: an operation with its tool's name, its stage in the plan (0 first), its place and what comes before."""
+    """What is ordered: an operation with its tool's name, its stage in the plan (0 first), its position and what comes before."""
 
     id: str
     tool: str
     stage: int
-    place: tuple[float, float]
+    position: tuple[float, float]
     after: frozenset[str]
 
 
@@ -64,18 +64,18 @@ def _walked(jobs: Mapping[str, OrderedOperation], tools: Sequence[str]) -> tuple
     order: list[str] = []
     at = (0.0, 0.0)
     for tool in tools:
-        left = _exhausted(jobs, tool, frozenset(order))
-        while left:
-            ready = [jobs[i] for i in left if jobs[i].after <= set(order)]
+        remaining = _exhausted(jobs, tool, frozenset(order))
+        while remaining:
+            ready = [jobs[i] for i in remaining if jobs[i].after <= set(order)]
             here = at
-            chosen = min(
+            job = min(
                 ready,
                 key=lambda j: (
                     j.stage,
-                    (j.place[0] - here[0]) ** 2 + (j.place[1] - here[1]) ** 2,
+                    (j.position[0] - here[0]) ** 2 + (j.position[1] - here[1]) ** 2,
                     j.id,
                 ),
             )
-            order.append(chosen.id)
-            at, left = chosen.place, left - {chosen.id}
+            order.append(job.id)
+            at, remaining = job.position, remaining - {job.id}
     return tuple(order)

@@ -68,15 +68,15 @@ def make_setups(
 
 
 def from_below(feature: Feature) -> bool:
-    """Say whether a feature is reached along the recognition frame's +z, from under the part."""
+    """Return whether a feature is reached along the recognition frame's +z, from under the part."""
     direction = feature.attributes.get("direction")
     return isinstance(direction, tuple) and len(direction) == 3 and direction[2] < 0.0
 
 
 def _setup(n: int, frame: Frame, blank: Blank, settings: SetupSettings) -> Setup:
     low, high = blank.box_in(frame)
-    place, height = settings.origin.split()
-    origin = low if place == "corner" else 0.5 * (low + high)
+    position, height = settings.origin.split()
+    origin = low if position == "corner" else 0.5 * (low + high)
     z = high[2] if height == "top" else low[2]
     offset = frame.moved(np.array([origin[0], origin[1], z]))
     return Setup(

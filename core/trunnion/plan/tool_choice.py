@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from trunnion import tolerance
 from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import trimmed
 
 CUSP_SPREAD = 1.1
@@ -19,10 +19,11 @@ CUSP_SPREAD = 1.1
 class ToolRequirement:
     """What a cutter is wanted for.
 
-    `depth`: how far below the highest surroundings its tip goes; `room`: the plane area its envelope must keep in; `wanted`: what it
-    should cover there (the room itself when empty). `corner_radius`: largest corner radius that leaves no material at the foot;
+    `depth`: how far below the highest surroundings its tip goes; `envelope_area`: the plane area its envelope must keep in; `wanted`: what
+    it should cover there (the envelope's area itself when empty). `corner_radius`: largest corner radius that leaves no material at the
+    foot;
     `exact`: the corner radius has to be that one. `radius`: largest radius of the cutter (0: no bound). `missable`: share of the wanted
-    area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where the room is widest, so
+    area that may be left to smaller cutters. `spare`: how many of its radii must fit from rim to middle where that area is widest, so
     that it can enter and turn. `keep`: for floors, the distance from the finished walls beside the fillet's own; then it is the cutter's
     flat that has to cover what is wanted (below 0: the whole disc). `near`: how much smaller than the largest candidate a cutter may be,
     as a share of its diameter, to be chosen because it serves other requirements too. `cusps`: only what stays in sharp inner edges may be
@@ -30,7 +31,7 @@ class ToolRequirement:
     """
 
     depth: float
-    room: Region
+    envelope_area: Region
     wanted: Region
     corner_radius: float
     exact: bool = False
@@ -55,7 +56,7 @@ def candidates(
     requirement: ToolRequirement,
     tools: Sequence[Tool],
     clearance: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Candidates:
     """Return the cutters that fit a requirement; each test that leaves none says what would be needed."""
     if not tools:
@@ -125,40 +126,40 @@ def depth_reached(tool: Tool) -> float:
 
 
 def _fitting(requirement: ToolRequirement, tools: Sequence[Tool], progress: Progress) -> list[Tool]:
-    """Return the cutters that cover what is wanted without leaving the room, but for the share that may be missed.
+    """Return the cutters that cover what is wanted without leaving the envelope's area, but for the share that may be missed.
 
     Where one fits, so do all smaller ones: the largest is looked for.
     """
     most = _missable(requirement, tools)
     for tool in progress.each(sorted(tools, key=lambda t: -t.diameter)):
-        if requirement.spare > 1.0 and not requirement.room.offset(
+        if requirement.spare > 1.0 and not requirement.envelope_area.offset(
             -requirement.spare * tool.radius
         ):
             continue
-        if _left(requirement, tool) <= most(tool):
+        if _missed_area(requirement, tool) <= most(tool):
             return [t for t in tools if t.diameter <= tool.diameter]
     return []
 
 
 def fits_through(requirement: ToolRequirement, tool: Tool, tools: Sequence[Tool]) -> bool:
-    """Say whether a cutter covers what is wanted, but for what may be missed, as well as the others of the catalogue would."""
-    return _left(requirement, tool) <= _missable(requirement, tools)(tool)
+    """Return whether a cutter covers what is wanted, but for what may be missed, as well as the others of the catalogue would."""
+    return _missed_area(requirement, tool) <= _missable(requirement, tools)(tool)
 
 
-def _left(requirement: ToolRequirement, tool: Tool) -> float:
+def _missed_area(requirement: ToolRequirement, tool: Tool) -> float:
     """Return the area of what is wanted that a cutter doesn't cover."""
-    wanted, covered = requirement.wanted or requirement.room, _covered(requirement, tool)
+    wanted, covered = requirement.wanted or requirement.envelope_area, _covered(requirement, tool)
     return wanted.minus(covered).area if covered else wanted.area
 
 
 def _missable(requirement: ToolRequirement, tools: Sequence[Tool]) -> Callable[[Tool], float]:
     """Return the area that each cutter may leave: in sharp edges it grows with the square of the cutter's radius."""
-    total = (requirement.wanted or requirement.room).area
+    total = (requirement.wanted or requirement.envelope_area).area
     most, slack = requirement.missable * total, tolerance.AREA * max(total, 1.0)
     if not requirement.cusps:
         return lambda tool: most + slack
     smallest = min(tools, key=lambda t: t.diameter)
-    cusps = CUSP_SPREAD * _left(requirement, smallest)
+    cusps = CUSP_SPREAD * _missed_area(requirement, smallest)
     return lambda tool: min(most, cusps * (tool.radius / smallest.radius) ** 2) + slack
 
 
@@ -175,13 +176,13 @@ def _fitting_floor(
 
 
 def _covered(requirement: ToolRequirement, tool: Tool) -> Region:
-    """Return what a cutter reaches: its disc in the room, or for a floor its flat, kept off the walls and their fillet."""
+    """Return what a cutter reaches: its disc in the envelope's area, or for a floor its flat, kept off the walls and their fillet."""
     if requirement.keep < 0.0:
-        return requirement.room.opened(tool.radius)
+        return requirement.envelope_area.opened(tool.radius)
     flat = tool.radius - tool.corner_radius
-    return requirement.room.offset(-(requirement.keep + requirement.corner_radius + flat)).offset(
-        flat
-    )
+    return requirement.envelope_area.offset(
+        -(requirement.keep + requirement.corner_radius + flat)
+    ).offset(flat)
 
 
 def covered_by_few(
@@ -192,20 +193,20 @@ def covered_by_few(
 
     Among cutters that serve equally many the larger, then the shorter, then the one with the larger corner radius is taken.
     """
-    chosen: dict[str, Tool] = {}
+    assigned: dict[str, Tool] = {}
     for requirement, tools in fits.items():
         own = [t for t in tools if any(t.name == k.name for k in kept)]
         if own:
-            chosen[requirement] = own[0]
-    left = {
+            assigned[requirement] = own[0]
+    remaining = {
         requirement: tools
         for requirement, tools in fits.items()
-        if requirement not in chosen and tools
+        if requirement not in assigned and tools
     }
-    while left:
+    while remaining:
         served: dict[str, int] = {}
         named: dict[str, Tool] = {}
-        for tools in left.values():
+        for tools in remaining.values():
             for tool in tools:
                 served[tool.name] = served.get(tool.name, 0) + 1
                 named[tool.name] = tool
@@ -221,9 +222,9 @@ def covered_by_few(
         )
         for requirement in [
             requirement
-            for requirement, tools in left.items()
+            for requirement, tools in remaining.items()
             if any(t.name == best.name for t in tools)
         ]:
-            chosen[requirement] = best
-            del left[requirement]
-    return chosen
+            assigned[requirement] = best
+            del remaining[requirement]
+    return assigned

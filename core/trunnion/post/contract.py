@@ -10,14 +10,14 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
-from trunnion.shop.kinematics import NO_PLACES, Places
+from trunnion.shop.kinematics import NO_WORK_POSITIONS, WorkPositions
 
 
 class Dialect(Protocol):
     """Writes programs as text and reads text back. Same programs, header and settings: same bytes.
 
     `suffix` is the file name's end; the first `STAMP_LINES` lines of every text are its stamp. Where the machine of a setup has rotary
-    axes, `places` says where its work stands on it.
+    axes, `work_positions` says where its work stands on it.
     """
 
     name: str
@@ -28,7 +28,7 @@ class Dialect(Protocol):
         programs: Sequence[Program],
         header: Header,
         settings: PostSettings,
-        places: Places = NO_PLACES,
+        work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> str:
         """Return the text; raise `Refused` for what the control can't do."""
         ...
@@ -42,7 +42,7 @@ class Dialect(Protocol):
         text: str,
         tools: Sequence[AnyTool],
         setups: Sequence[Setup],
-        places: Places = NO_PLACES,
+        work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> tuple[Program, ...]:
         """Return the programs that a text says; raise `BadInput` with the line of anything that isn't understood."""
         ...

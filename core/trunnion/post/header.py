@@ -125,16 +125,16 @@ class Header:
         return (*lines, *(tool_line(t, units) for t in tools_of(programs)))
 
 
-def place_lines(setup: Setup, place: WorkPosition, units: str) -> tuple[str, ...]:
+def work_position_lines(setup: Setup, work_position: WorkPosition, units: str) -> tuple[str, ...]:
     """Return the lines of a header that say where the work stands and what the words of rotary axes mean; a reader compares the first."""
-    rotary = place.machine.rotary
-    stands = " ".join(
+    rotary = work_position.machine.rotary
+    coordinates = " ".join(
         f"{letter}{_length(-v, units)}"
-        for letter, v in zip("XYZ", place.foot.tolist(), strict=True)
+        for letter, v in zip("XYZ", work_position.foot.tolist(), strict=True)
     )
     zero = " ".join(f"{a.name}0" for a in rotary)
     lines = [
-        f"STANDS {setup.name} {stands} FROM THE MIDDLE OF THE TABLE OF {place.machine.name}",
+        f"STANDS {setup.name} {coordinates} FROM THE MIDDLE OF THE TABLE OF {work_position.machine.name}",
         f"WORDS ARE POSITIONS OF THE MACHINE'S AXES, {setup.work_offset} IS THE ORIGIN OF {setup.name} WHERE IT STANDS WITH {zero}",
     ]
     if any(a.carries == "tool" for a in rotary):

@@ -17,7 +17,7 @@ from trunnion.post.header import Header
 from trunnion.post.iso_words import iso_words
 from trunnion.post.settings import PostSettings
 from trunnion.post.writer.program import ProgramWriter, comment
-from trunnion.shop.kinematics import NO_PLACES, Places
+from trunnion.shop.kinematics import NO_WORK_POSITIONS, WorkPositions
 
 if TYPE_CHECKING:
     from trunnion.post.readers.word_address.interpreter import Control
@@ -41,12 +41,12 @@ class IsoDialect:
         programs: Sequence[Program],
         header: Header,
         settings: PostSettings,
-        places: Places = NO_PLACES,
+        work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> str:
         """Return the text of one setup's program."""
         self._check_one(programs)
         writer = ProgramWriter(
-            self.words, programs[0], settings, places.get(programs[0].setup.name)
+            self.words, programs[0], settings, work_positions.get(programs[0].setup.name)
         )
         return "\n".join(writer.lines(header)) + "\n"
 
@@ -59,7 +59,7 @@ class IsoDialect:
         text: str,
         tools: Sequence[AnyTool],
         setups: Sequence[Setup],
-        places: Places = NO_PLACES,
+        work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> tuple[Program, ...]:
         """Return the program of the one setup."""
         from trunnion.post.readers.iso import read_iso
@@ -67,7 +67,12 @@ class IsoDialect:
         self._check_one(setups)
         return (
             read_iso(
-                text, tools, setups[0], places.get(setups[0].name), self.words, self.control()
+                text,
+                tools,
+                setups[0],
+                work_positions.get(setups[0].name),
+                self.words,
+                self.control(),
             ),
         )
 

@@ -86,7 +86,7 @@ def iso_words(name: str, package: str = "") -> IsoWords:
 
 
 def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
-    """Return the words of a control; raise `BadInput` where they miss an entry, or name a place or a role that is not known."""
+    """Return the words of a control; raise `BadInput` where they miss an entry, or name a position or a role that is not known."""
     if words.centres not in CENTRES:
         raise BadInput(
             f"dialect {name}: centres must be one of {', '.join(CENTRES)}; got {words.centres!r}"
@@ -140,15 +140,15 @@ def _check_cycles(name: str, words: IsoWords) -> None:
 
 def _check_placeholders(name: str, word: str, lines: tuple[str, ...]) -> None:
     try:
-        places = [
-            place
+        field_names = [
+            field_name
             for line in lines
-            for _, place, _, _ in Formatter().parse(line)
-            if place is not None
+            for _, field_name, _, _ in Formatter().parse(line)
+            if field_name is not None
         ]
     except ValueError as reason:
         raise BadInput(f"dialect {name}: {word}: {reason}; write braces as {{{{ and }}}}") from None
-    for place in places:
-        if place not in _PLACEHOLDERS[word]:
+    for field_name in field_names:
+        if field_name not in _PLACEHOLDERS[word]:
             known = ", ".join(_PLACEHOLDERS[word]) or "none"
-            raise BadInput(f"dialect {name}: {word}: {{{place}}} is not known; known: {known}")
+            raise BadInput(f"dialect {name}: {word}: {{{field_name}}} is not known; known: {known}")

@@ -63,19 +63,25 @@ class JointPath:
 def joint_path(
     path: Toolpath,
     tool: Tool,
-    place: WorkPosition,
-    stand: Floats | None,
-    straying: PathTolerance,
+    work_position: WorkPosition,
+    start_angle: Floats | None,
+    path_tolerance: PathTolerance,
     operation: str,
 ) -> JointPath:
     """Return the positions of the axes along a path.
 
-    `stand` (a,) rad are the angles that the rotary axes have; the path goes on from there when it can, else it begins with others. None:
-    it may begin with any. Raises `Refused` for what the machine can't hold or can't follow.
+    `start_angle` (a,) rad are the angles that the rotary axes have; the path goes on from there when it can, else it begins with others.
+    None: it may begin with any. Raises `Refused` for what the machine can't hold or can't follow.
     """
-    angle = followed(path.axis, place, stand, MARGIN * straying.feed / tool.flute_length, operation)
-    path, angle = _arcs_opened(path, angle, place, straying)
-    return _between(path, angle, tool, place, straying, operation)
+    angle = followed(
+        path.axis,
+        work_position,
+        start_angle,
+        MARGIN * path_tolerance.feed / tool.flute_length,
+        operation,
+    )
+    path, angle = _arcs_opened(path, angle, work_position, path_tolerance)
+    return _between(path, angle, tool, work_position, path_tolerance, operation)
 
 
 def arc_points(path: Toolpath, rows: Ints, within: float) -> tuple[Ints, Floats]:
@@ -132,15 +138,15 @@ def lines_for_arcs(path: Toolpath, rows: Ints, within: float) -> tuple[Toolpath,
 
 
 def _arcs_opened(
-    path: Toolpath, angle: Floats, place: WorkPosition, straying: PathTolerance
+    path: Toolpath, angle: Floats, work_position: WorkPosition, path_tolerance: PathTolerance
 ) -> tuple[Toolpath, Floats]:
     """Return a path without the arcs that don't lie across the machine's Z, and its angles."""
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
     if not len(arcs):
         return path, angle
-    beside = np.linalg.norm(spindle_of(place, angle[arcs])[:, :2], axis=1) > UPRIGHT
+    is_off_axis = np.linalg.norm(spindle_of(work_position, angle[arcs])[:, :2], axis=1) > UPRIGHT
     turned = np.abs(angle[arcs] - angle[arcs - 1]).max(axis=1, initial=0.0) > SLACK
-    opened, row = lines_for_arcs(path, arcs[beside | turned], MARGIN * straying.feed)
+    opened, row = lines_for_arcs(path, arcs[is_off_axis | turned], MARGIN * path_tolerance.feed)
     return opened, angle[row]
 
 
@@ -164,32 +170,34 @@ def _between(
     path: Toolpath,
     angle: Floats,
     tool: Tool,
-    place: WorkPosition,
-    straying: PathTolerance,
+    work_position: WorkPosition,
+    path_tolerance: PathTolerance,
     operation: str,
 ) -> JointPath:
     """Return the positions of the axes at a path's poses and at those that must come between them."""
     turning = np.zeros(len(path), bool)
     turning[1:] = np.abs(np.diff(angle, axis=0)).max(axis=1, initial=0.0) > 0.0
     rapid = path.motion == Motion.RAPID
-    allowed = np.where(rapid, straying.rapid, straying.feed)
+    allowed = np.where(rapid, path_tolerance.rapid, path_tolerance.feed)
     reach = np.where(rapid, tool.gauge_length, tool.flute_length)
     block = np.flatnonzero(turning)
     pieces = _Pieces(
         block, np.zeros(len(block)), np.ones(len(block)), angle[block - 1], angle[block]
     )
-    pieces = _axis_held(path, pieces, allowed / reach, place, operation)
+    pieces = _axis_held(path, pieces, allowed / reach, work_position, operation)
     still = np.flatnonzero(~turning)
-    row, share, inner = _tip_held(path, pieces, allowed, tool.gauge_length, place)
+    row, share, inner = _tip_held(path, pieces, allowed, tool.gauge_length, work_position)
     order = np.lexsort((np.concatenate([np.ones(len(still)), share]), np.concatenate([still, row])))
     row = np.concatenate([still, row])[order]
     share = np.concatenate([np.ones(len(still)), share])[order]
     angle = np.vstack([angle[still], inner])[order]
-    words = words_of(place, _tips(path, row, share), angle, tool.gauge_length)
+    words = words_of(work_position, _tips(path, row, share), angle, tool.gauge_length)
     centre = np.full_like(words, np.nan)
     arcs = np.flatnonzero(path.motion[row] >= Motion.ARC_CW)
     if len(arcs):
-        centre[arcs] = words_of(place, path.centre[row[arcs]], angle[arcs], tool.gauge_length)
+        centre[arcs] = words_of(
+            work_position, path.centre[row[arcs]], angle[arcs], tool.gauge_length
+        )
     return JointPath(
         words=words,
         angle=angle,
@@ -201,27 +209,27 @@ def _between(
 
 
 def _axis_held(
-    path: Toolpath, pieces: _Pieces, allowed: Floats, place: WorkPosition, operation: str
+    path: Toolpath, pieces: _Pieces, allowed: Floats, work_position: WorkPosition, operation: str
 ) -> _Pieces:
     """Return pieces halved until the tool axis stays within `allowed` (n,) rad of its even turn; mid poses take the way that is nearer."""
     done: list[_Pieces] = []
     for _ in range(HALVINGS):
-        strays = _axis_strays(path, pieces, place) > MARGIN * allowed[pieces.block]
+        strays = _axis_strays(path, pieces, work_position) > MARGIN * allowed[pieces.block]
         strays |= np.abs(pieces.last - pieces.first).max(axis=1, initial=0.0) > np.pi
         done.append(pieces.of(~strays))
         if not strays.any():
             return _ordered(done)
-        pieces = _halved(path, pieces.of(strays), place)
-        low, high = place.limits
+        pieces = _halved(path, pieces.of(strays), work_position)
+        low, high = work_position.limits
         outside = ((pieces.first < low - SLACK) | (pieces.first > high + SLACK)).any(axis=1)
         if outside.any():
             k = int(np.argmax(outside))
             raise Refused(
-                f"operation {operation}, block {pieces.block[k] + 1}: {beyond(pieces.first[k : k + 1], place)}"
+                f"operation {operation}, block {pieces.block[k] + 1}: {beyond(pieces.first[k : k + 1], work_position)}"
             )
     raise Refused(
-        f"operation {operation}, block {pieces.block[0] + 1}: {place.machine.title} must turn back {place.names} here because of "
-        "their limits, and can't while it moves; part the operation or choose another machine"
+        f"operation {operation}, block {pieces.block[0] + 1}: {work_position.machine.title} must turn back {work_position.names} here "
+        "because of their limits, and can't while it moves; part the operation or choose another machine"
     )
 
 
@@ -235,41 +243,41 @@ def _ordered(parts: list[_Pieces]) -> _Pieces:
     return whole.of(np.lexsort((whole.start, whole.block)))
 
 
-def _axis_strays(path: Toolpath, pieces: _Pieces, place: WorkPosition) -> Floats:
+def _axis_strays(path: Toolpath, pieces: _Pieces, work_position: WorkPosition) -> Floats:
     """Return by how much (p,) rad the tool axis leaves its even turn in pieces whose axes go evenly."""
     most = np.zeros(len(pieces.block))
     for share in SHARES:
         planned = turned(path, pieces.block, pieces.start + share * (pieces.end - pieces.start))
-        done = axes_of(place, pieces.first + share * (pieces.last - pieces.first))
+        done = axes_of(work_position, pieces.first + share * (pieces.last - pieces.first))
         most = np.maximum(most, np.linalg.norm(planned - done, axis=1))
     return most
 
 
-def _halved(path: Toolpath, pieces: _Pieces, place: WorkPosition) -> _Pieces:
+def _halved(path: Toolpath, pieces: _Pieces, work_position: WorkPosition) -> _Pieces:
     middle = 0.5 * (pieces.start + pieces.end)
     between = 0.5 * (pieces.first + pieces.last)
-    angles, free, _ = rotary_solutions(place.machine, turned(path, pieces.block, middle))
+    angles, free, _ = rotary_solutions(work_position.machine, turned(path, pieces.block, middle))
     angles = angles + TURN * np.round((between[:, None] - angles) / TURN)
     angles = np.where(free, between[:, None], angles)
-    way = np.abs(angles - between[:, None]).sum(axis=2).argmin(axis=1)
-    chosen = angles[np.arange(len(way)), way]
+    solution = np.abs(angles - between[:, None]).sum(axis=2).argmin(axis=1)
+    nearest = angles[np.arange(len(solution)), solution]
     return _ordered(
         [
-            _Pieces(pieces.block, pieces.start, middle, pieces.first, chosen),
-            _Pieces(pieces.block, middle, pieces.end, chosen, pieces.last),
+            _Pieces(pieces.block, pieces.start, middle, pieces.first, nearest),
+            _Pieces(pieces.block, middle, pieces.end, nearest, pieces.last),
         ]
     )
 
 
 def _tip_held(
-    path: Toolpath, pieces: _Pieces, allowed: Floats, gauge: float, place: WorkPosition
+    path: Toolpath, pieces: _Pieces, allowed: Floats, gauge: float, work_position: WorkPosition
 ) -> tuple[Ints, Floats, Floats]:
     """Return the ends of blocks (row, share of it, angles) along which the tip stays within `allowed` (n,) mm of its straight way."""
     turn = np.abs(pieces.last - pieces.first).max(axis=1, initial=0.0)
     pieces = _parted(pieces, np.maximum(1, np.ceil(turn / MOST_TURN - SLACK)).astype(np.int64))
     done: list[_Pieces] = []
     while len(pieces.block):
-        strays = _tip_strays(path, pieces, gauge, place) / allowed[pieces.block]
+        strays = _tip_strays(path, pieces, gauge, work_position) / allowed[pieces.block]
         done.append(pieces.of(strays <= 1.0))
         far = strays > 1.0
         pieces = _parted(pieces.of(far), np.ceil(np.sqrt(strays[far] / MARGIN)).astype(np.int64))
@@ -290,14 +298,16 @@ def _parted(pieces: _Pieces, n: Ints) -> _Pieces:
     )
 
 
-def _tip_strays(path: Toolpath, pieces: _Pieces, gauge: float, place: WorkPosition) -> Floats:
+def _tip_strays(
+    path: Toolpath, pieces: _Pieces, gauge: float, work_position: WorkPosition
+) -> Floats:
     """Return by how much (p,) mm the tip leaves its straight way in pieces whose axes go evenly."""
-    first = words_of(place, _tips(path, pieces.block, pieces.start), pieces.first, gauge)
-    last = words_of(place, _tips(path, pieces.block, pieces.end), pieces.last, gauge)
+    first = words_of(work_position, _tips(path, pieces.block, pieces.start), pieces.first, gauge)
+    last = words_of(work_position, _tips(path, pieces.block, pieces.end), pieces.last, gauge)
     most = np.zeros(len(first))
     for share in SHARES:
         done, _ = poses_of(
-            place,
+            work_position,
             first + share * (last - first),
             pieces.first + share * (pieces.last - pieces.first),
             gauge,

@@ -44,7 +44,7 @@ def _stamped(posted: PostedFile, header: Header, plan: str) -> PostedFile:
 
 
 def is_released(text: str) -> bool:
-    """Say whether a text's stamp releases it."""
+    """Return whether a text's stamp releases it."""
     lines = text.split("\n")
     return len(lines) > STAMP_LINES and _RELEASED_LINE.fullmatch(lines[1]) is not None
 
@@ -63,7 +63,7 @@ def checked_files(posted: Iterable[PostedFile]) -> tuple[PostedFile, ...]:
 
 
 def is_program_of(name: str, file_name: str) -> bool:
-    """Say whether a file in an output folder is a program of NAME, released or rejected, from whatever run.
+    """Return whether a file in an output folder is a program of NAME, released or rejected, from whatever run.
 
     >>> is_program_of("B1", "B1.S2.REJECTED.nc"), is_program_of("B1", "B1.cl"), is_program_of("B1", "B12.S1.nc")
     (True, True, False)

@@ -167,7 +167,7 @@ def written(
 
 
 def _written_cycles(path: Toolpath, scale: TickScale, rows: Ints) -> Iterator[WrittenCycle]:
-    """Yield the cycles of a path by their places among the rows that are kept; without those that rounding left no motion."""
+    """Yield the cycles of a path by their positions among the rows that are kept; without those that rounding left no motion."""
     for block in path.cycles:
         first, last = np.searchsorted(rows, [block.first, block.last + 1]).tolist()
         end, cycle = float(path.position[block.last, 2]), block.cycle
@@ -207,11 +207,11 @@ def _written_sweeps(point: Ints, centre: Ints, motion: Ints, arcs: Ints) -> Floa
 
 
 def _turned_round(path: Toolpath, point: Ints, centre: Ints, arcs: Ints) -> Ints:
-    said = _written_sweeps(point, centre, path.motion, arcs)
-    return arcs[said - np.abs(path.sweeps()[arcs]) > np.pi]
+    sweeps = _written_sweeps(point, centre, path.motion, arcs)
+    return arcs[sweeps - np.abs(path.sweeps()[arcs]) > np.pi]
 
 
 def _nearly_full(path: Toolpath, point: Ints, centre: Ints, motion: Ints) -> Ints:
     arcs = np.flatnonzero(motion >= Motion.ARC_CW)
-    said = _written_sweeps(point, centre, motion, arcs)
-    return arcs[np.abs(path.sweeps()[arcs]) - said > np.pi]
+    sweeps = _written_sweeps(point, centre, motion, arcs)
+    return arcs[np.abs(path.sweeps()[arcs]) - sweeps > np.pi]

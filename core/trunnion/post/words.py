@@ -11,7 +11,7 @@ from importlib.resources import files
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 from trunnion.findings import BadInput, Refused
-from trunnion.model.motion.program import STANDING, ProgramSection
+from trunnion.model.motion.program import STOPPED, ProgramSection
 from trunnion.model.spindle import per_minute
 
 T = TypeVar("T")
@@ -103,7 +103,7 @@ def refuse_unwritable(section: ProgramSection, title: str, coolant: Container[st
         )
     if section.coolant not in coolant:
         raise Refused(f"operation {id}: {title} has no coolant {section.coolant}")
-    if section.spindle_stands:
+    if section.spindle_stopped:
         raise Refused(f"operation {id}: a spindle speed of {section.spindle:g} turns nothing")
     if not len(section.path):
         raise Refused(f"operation {id} has no motion: nothing to write")
@@ -124,7 +124,7 @@ def refuse_another_pitch(section: ProgramSection) -> None:
             block.cycle.pitch,
             float(section.path.feed[block.first : block.last + 1].max()),
         )
-        if pitch > 0.0 and abs(feed - per_minute(pitch, section.spindle)) > pitch * STANDING:
+        if pitch > 0.0 and abs(feed - per_minute(pitch, section.spindle)) > pitch * STOPPED:
             raise Refused(
                 f"operation {section.operation}: tapping at {feed:g} mm/min is not {pitch:g} mm a revolution at "
                 f"{section.spindle:g} 1/min; feed at {per_minute(pitch, section.spindle):g}"

@@ -84,16 +84,16 @@ def _lines(graph: FaceGraph) -> list[RevolutionAxis]:
     near = SAME_LINE * size
     found: list[RevolutionAxis] = []
     # A slightly bent edge may be an arc about a line far out of the part.
-    left = (weight > COINCIDENT**2) & (np.linalg.norm(foot - middle, axis=1) < 0.5 * size)
-    while left.any() and len(found) < CANDIDATES:
-        most = int(np.argmax(np.where(left, weight, -1.0)))
-        same = left & _same(foot, direction, most, near)
+    remaining = (weight > COINCIDENT**2) & (np.linalg.norm(foot - middle, axis=1) < 0.5 * size)
+    while remaining.any() and len(found) < CANDIDATES:
+        most = int(np.argmax(np.where(remaining, weight, -1.0)))
+        same = remaining & _same(foot, direction, most, near)
         found.append(
             RevolutionAxis(
                 point=foot[most], direction=direction[most] / np.linalg.norm(direction[most])
             )
         )
-        left &= ~same
+        remaining &= ~same
     return found
 
 

@@ -1,4 +1,5 @@
-"""Faces that are repeated evenly about an axis, by what doesn't turn with the part: area, place and normals in cylindrical coordinates."""
+"""Faces that are repeated evenly about an axis, by what doesn't turn with the part: area, position and normals in cylindrical
+coordinates."""
 
 from __future__ import annotations
 
@@ -16,14 +17,14 @@ LEAST = 5
 """Copies from which on a pattern counts: three or four equal faces stand on many a part that is no wheel."""
 SAME_AREA = 0.03
 """Share by which the areas of copies may differ: trimming tolerances of imported blades stay below a hundredth."""
-SAME_PLACE = 0.01
+SAME_POSITION = 0.01
 """Distance of the copies' middles in radius and height, over the part's size."""
 SAME_NORMAL = 0.05
 """Difference of the copies' mean normals in the directions away from, around and along the axis (unit vectors)."""
 SAME_ANGLE = radians(1.5)
-"""How far a copy may be from its place around the axis, in radians."""
+"""How far a copy may be from its position around the axis, in radians."""
 PRESENT = 0.7
-"""Share of the places around the axis that must be taken: a few copies may be cut into several faces."""
+"""Share of the positions around the axis that must be taken: a few copies may be cut into several faces."""
 MOST = 120
 """Copies that are looked for at most."""
 
@@ -38,17 +39,17 @@ class CircularPattern:
 
 def patterns(graph: FaceGraph, axis: RevolutionAxis) -> tuple[CircularPattern, ...]:
     """Return the faces that are repeated evenly about an axis, the largest copies first. Faces without samples are in none."""
-    rows, place, angle = _signatures(graph, axis)
-    near = SAME_PLACE * reach(graph)
+    rows, position, angle = _signatures(graph, axis)
+    near = SAME_POSITION * reach(graph)
     found = []
-    left = np.ones(len(rows), dtype=bool)
-    for k in np.argsort(-place[:, 0], kind="stable"):
-        if left[k]:
+    remaining = np.ones(len(rows), dtype=bool)
+    for k in np.argsort(-position[:, 0], kind="stable"):
+        if remaining[k]:
             allowed = np.array(
-                [SAME_AREA * place[k, 0], near, near, SAME_NORMAL, SAME_NORMAL, SAME_NORMAL]
+                [SAME_AREA * position[k, 0], near, near, SAME_NORMAL, SAME_NORMAL, SAME_NORMAL]
             )
-            alike = left & (np.abs(place - place[k]) <= allowed).all(axis=1)
-            left &= ~alike
+            alike = remaining & (np.abs(position - position[k]) <= allowed).all(axis=1)
+            remaining &= ~alike
             count = fold(angle[alike])
             if count:
                 found.append(CircularPattern(count=count, rows=rows[alike]))
@@ -82,9 +83,9 @@ def _signatures(graph: FaceGraph, axis: RevolutionAxis) -> tuple[Ints, Floats, F
     out = axis.away(graph.sample_point)
     out /= np.maximum(np.linalg.norm(out, axis=1), 1e-12)[:, None]
     around = np.cross(axis.direction, out)
-    normal = [np.einsum("ij,ij->i", graph.sample_normal, way) for way in (out, around)] + [
-        graph.sample_normal @ axis.direction
-    ]
+    normal = [
+        np.einsum("ij,ij->i", graph.sample_normal, direction) for direction in (out, around)
+    ] + [graph.sample_normal @ axis.direction]
     middle = (
         np.column_stack([np.bincount(of, graph.sample_point[:, k], len(graph)) for k in range(3)])[
             rows
@@ -93,10 +94,10 @@ def _signatures(graph: FaceGraph, axis: RevolutionAxis) -> tuple[Ints, Floats, F
     )
     means = [np.bincount(of, n, len(graph))[rows] / number[rows] for n in normal]
     away = axis.away(middle)
-    place = np.column_stack(
+    position = np.column_stack(
         [graph.area[rows], np.linalg.norm(away, axis=1), axis.height(middle), *means]
     )
     x = np.eye(3)[int(np.argmin(np.abs(axis.direction)))]
     x = x - (x @ axis.direction) * axis.direction
     x = x / np.linalg.norm(x)
-    return rows, place, np.arctan2(away @ np.cross(axis.direction, x), away @ x)
+    return rows, position, np.arctan2(away @ np.cross(axis.direction, x), away @ x)

@@ -1,4 +1,4 @@
-"""The deviation map: how far every place of the finished part is from the part as drawn, as triangles with a value at each corner.
+"""The deviation map: how far every position of the finished part is from the part as drawn, as triangles with a value at each corner.
 
 The proof measures at samples. Faces on which they differ are divided until no edge is longer than the samples are apart; a corner has the
 value of its nearest sample, and a sample outside the tolerance passes its value to the corners around it, so that no gouge falls between.
@@ -13,13 +13,13 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.verdict import Deviation
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 RANGE = 2.5
 """Where the colours end, in tolerances."""
 EVEN = 1e-3
 """mm: a face whose samples differ by less has one colour anyway."""
-MOST_PLACES = 60
+MOST_POINTS = 60
 _ROUNDS = 14
 _APART = 1e5
 """mm added between two faces in a search for neighbours, so that none is found on another face."""
@@ -57,7 +57,7 @@ def deviation_map(
     deviation: Deviation,
     tolerance: float,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> DeviationMap:
     """Return the map of a part's mesh; faces without a sample count as finished."""
     low, high, limit = -tolerance, tolerance + allowance, RANGE * tolerance + allowance
@@ -110,7 +110,7 @@ def _spacing(deviation: Deviation) -> float:
 
 
 def divided(
-    mesh: Mesh, uneven: Bools, apart: float, progress: Progress = QUIET
+    mesh: Mesh, uneven: Bools, apart: float, progress: Progress = NO_PROGRESS
 ) -> tuple[Floats, Ints, Ints]:
     """Return points, triangles and faces of a mesh whose chosen faces (by tag) have no edge longer than `apart` mm."""
     points, triangles, face = (
@@ -177,16 +177,16 @@ def values_at(
     owner = np.zeros(len(points), np.int64)
     owner[triangles.ravel()] = np.repeat(face, 3)
     known = np.isin(owner, deviation.face)
-    samples, places = (
+    samples, positions = (
         np.column_stack([p, tags * _APART])
         for p, tags in ((deviation.point, deviation.face), (points, owner))
     )
-    _, nearest = cKDTree(samples).query(places[known])
+    _, nearest = cKDTree(samples).query(positions[known])
     value[known] = deviation.deviation[nearest]
     bad = np.flatnonzero((deviation.deviation < low) | (deviation.deviation > high))
     if len(bad):
         around = np.flatnonzero(known)
-        _, rows = cKDTree(places[known]).query(samples[bad], k=min(3, len(around)))
+        _, rows = cKDTree(positions[known]).query(samples[bad], k=min(3, len(around)))
         rows = around[np.asarray(rows).reshape(len(bad), -1)]
         spread = np.repeat(deviation.deviation[bad], rows.shape[1])
         # The gravest last: a gouge is never painted over by what is left beside it.
@@ -213,4 +213,4 @@ def worst_points(deviation: Deviation, low: float, high: float) -> tuple[WorstPo
                     deviation=float(deviation.deviation[row]),
                 )
             )
-    return tuple(found[:MOST_PLACES])
+    return tuple(found[:MOST_POINTS])

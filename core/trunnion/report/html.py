@@ -43,7 +43,7 @@ def report_html(
         duration=duration,
         share=share,
         degrees=degrees,
-        left_faces=left_faces(session),
+        residual_faces=residual_faces(session),
         spindle=spindle,
         feed=feed,
         fix_words=words_of,
@@ -78,7 +78,7 @@ def share(value: float) -> str:
     return f"{math.floor(value * 10_000 + ROUNDING) / 100:.2f} %"
 
 
-def left_faces(session: Session) -> list[tuple[int, float, float, bool, bool]]:
+def residual_faces(session: Session) -> list[tuple[int, float, float, bool, bool]]:
     """Return the faces that are not finished whole: (tag, unfinished mm2, most material left mm, planned, reachable), most first."""
     if session.verdict is None:
         return []

@@ -29,7 +29,7 @@ class DeviationColours:
 
     finished: Colour
     gouge: tuple[Colour, ...]
-    left: tuple[Colour, ...]
+    residual: tuple[Colour, ...]
 
     def at(self, value: Floats, low: float, high: float, limit: float) -> NDArray[np.uint8]:
         """Return the colour (v, 3) of deviations (v,) mm: gouge below `low`, left above `high`, both ending at `limit` from 0."""
@@ -37,7 +37,7 @@ class DeviationColours:
         found = np.tile(np.array(self.finished, np.float64), (len(value), 1))
         for colours, bad, share in (
             (self.gouge, value < low, (low - value) / (limit + low)),
-            (self.left, value > high, (value - high) / (limit - high)),
+            (self.residual, value > high, (value - high) / (limit - high)),
         ):
             steps = np.linspace(0.0, 1.0, len(colours))
             for channel in range(3):
@@ -106,9 +106,9 @@ class Palette:
         found: dict[str, Colour] = {}
         met: Counter[ClassColours] = Counter()
         for f in features:
-            stands = self.class_of(f)
-            found[f.id] = stands.colours[met[stands] % len(stands.colours)]
-            met[stands] += 1
+            colour_class = self.class_of(f)
+            found[f.id] = colour_class.colours[met[colour_class] % len(colour_class.colours)]
+            met[colour_class] += 1
         return found
 
     def motion(self, name: str) -> Colour:
@@ -138,8 +138,10 @@ def load_palette() -> Palette:
 
 
 def _deviation(data: dict[str, Any]) -> DeviationColours:
-    gouge, left = (tuple(rgb(name, text) for text in data[name]) for name in ("gouge", "left"))
-    return DeviationColours(finished=rgb("finished", data["finished"]), gouge=gouge, left=left)
+    gouge, residual = (tuple(rgb(name, text) for text in data[name]) for name in ("gouge", "left"))
+    return DeviationColours(
+        finished=rgb("finished", data["finished"]), gouge=gouge, residual=residual
+    )
 
 
 def rgb(name: str, text: str) -> Colour:

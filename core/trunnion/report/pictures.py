@@ -22,7 +22,7 @@ from trunnion.model.feature import Recognition
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.report.deviation import DeviationMap, deviation_map
 from trunnion.report.lines import (
     AXIS,
@@ -44,8 +44,8 @@ if TYPE_CHECKING:
 SIZE = (1600, 1000)
 FILLED = 0.92
 """How far what is drawn may reach from the middle of a picture towards its border."""
-_NAMED_PLACES = 5
-"""Worst places whose figure is written on the deviation's picture."""
+_NAMED_POINTS = 5
+"""Worst positions whose figure is written on the deviation's picture."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,7 +62,7 @@ def write_pictures(
     folder: Path,
     name: str,
     palette: Palette,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Picture, ...]:
     """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work."""
     made = []
@@ -138,10 +138,10 @@ def _reach(plotter: Plotter) -> float:
     bounds = np.reshape(plotter.bounds, (3, 2))
     corners = np.array([(*corner, 1.0) for corner in product(*bounds)])
     seen = plotter.camera.GetCompositeProjectionTransformMatrix(SIZE[0] / SIZE[1], -1.0, 1.0)
-    places = corners @ np.array(
+    projected = corners @ np.array(
         [[seen.GetElement(row, column) for row in range(4)] for column in range(4)]
     )
-    return float(np.abs(places[:, :2] / places[:, 3:]).max())
+    return float(np.abs(projected[:, :2] / projected[:, 3:]).max())
 
 
 def _legend(plotter: Plotter, entries: Mapping[str, Colour]) -> None:
@@ -184,8 +184,8 @@ def features_caption(recognition: Recognition, palette: Palette) -> str:
 def feature_legend(recognition: Recognition, palette: Palette) -> dict[str, Colour]:
     """Return what the colours of features mean: kinds with their number, or the classes of a kind with theirs."""
     return {
-        f"{stands.label} {n}": stands.colours[0]
-        for stands, n in palette.classes(recognition.features).items()
+        f"{colour_class.label} {n}": colour_class.colours[0]
+        for colour_class, n in palette.classes(recognition.features).items()
     }
 
 
@@ -222,10 +222,10 @@ def _gather(gathered: dict[str, list[Floats]], path: Toolpath, setup: Setup, siz
     ends = np.stack([world[:-1], world[1:]], axis=1)
     for row in dict.fromkeys(kind.tolist()):
         gathered.setdefault(MOTIONS[row], []).append(ends[kind == row])
-    standing = strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES)
-    if len(standing):
+    axis_strokes = strokes(path, STROKE_EVERY * size, STROKE_LENGTH * size, MOST_STROKES)
+    if len(axis_strokes):
         gathered.setdefault(AXIS, []).append(
-            setup.frame.to_world(standing.reshape(-1, 3)).reshape(-1, 2, 3)
+            setup.frame.to_world(axis_strokes.reshape(-1, 3)).reshape(-1, 2, 3)
         )
 
 
@@ -241,9 +241,9 @@ def _segments(pieces: Iterable[Floats]) -> Any:
 
 def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progress) -> Plotter:
     assert session.verdict is not None
-    chosen = checked(choose(ProofSettings, session.choices))
+    settings = checked(choose(ProofSettings, session.choices))
     shown = deviation_map(
-        mesh, session.verdict.deviation, chosen.tolerance, chosen.allowance, progress
+        mesh, session.verdict.deviation, settings.tolerance, settings.allowance, progress
     )
     progress.check()
     plotter = _plotter()
@@ -254,7 +254,7 @@ def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progres
     plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.35, diffuse=0.7)
     _outline(plotter, _surface(mesh.points, mesh.triangles))
     _legend(plotter, deviation_legend(shown, palette))
-    worst = shown.worst[:_NAMED_PLACES]
+    worst = shown.worst[:_NAMED_POINTS]
     if worst:
         plotter.add_point_labels(
             np.array([w.point for w in worst]),

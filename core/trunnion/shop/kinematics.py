@@ -50,24 +50,24 @@ class WorkPosition:
         )  # type: ignore[return-value]
 
 
-Places = Mapping[str, WorkPosition]
-"""Places by the names of their setups."""
-NO_PLACES: Places = MappingProxyType({})
+WorkPositions = Mapping[str, WorkPosition]
+"""Positions by the names of their setups."""
+NO_WORK_POSITIONS: WorkPositions = MappingProxyType({})
 """What is known of three axes: nothing more is needed."""
 
 
-def words_of(place: WorkPosition, tip: Floats, angle: Floats, gauge: float) -> Floats:
+def words_of(work_position: WorkPosition, tip: Floats, angle: Floats, gauge: float) -> Floats:
     """Return the X, Y, Z words (k, 3) in mm that put tips (k, 3) of the setup frame where they belong at rotary angles (k, a) in rad."""
-    work, spindle = _carried(place.machine, tip - place.foot, angle, gauge)
-    return np.asarray(work - spindle + place.foot - gauge * UP)
+    work, spindle = _carried(work_position.machine, tip - work_position.foot, angle, gauge)
+    return np.asarray(work - spindle + work_position.foot - gauge * UP)
 
 
 def poses_of(
-    place: WorkPosition, words: Floats, angle: Floats, gauge: float
+    work_position: WorkPosition, words: Floats, angle: Floats, gauge: float
 ) -> tuple[Floats, Floats]:
     """Return tips (k, 3) and unit tool axes (k, 3) in the setup frame at X, Y, Z words (k, 3) and rotary angles (k, a) in rad."""
-    machine, n = place.machine, len(words)
-    at = words - place.foot + gauge * UP
+    machine, n = work_position.machine, len(words)
+    at = words - work_position.foot + gauge * UP
     tool, axis = np.tile(-gauge * UP, (n, 1)), np.tile(UP, (n, 1))
     for k, rotary in reversed(list(enumerate(machine.rotary))):
         if rotary.carries == "tool":
@@ -78,27 +78,27 @@ def poses_of(
         if rotary.carries == "work":
             back, point = rotations(rotary, -angle[:, k]), np.array(rotary.point)
             at, axis = point + _turned(back, at - point), _turned(back, axis)
-    return at + place.foot, axis / np.linalg.norm(axis, axis=1, keepdims=True)
+    return at + work_position.foot, axis / np.linalg.norm(axis, axis=1, keepdims=True)
 
 
-def axes_of(place: WorkPosition, angle: Floats) -> Floats:
+def axes_of(work_position: WorkPosition, angle: Floats) -> Floats:
     """Return the unit tool axes (k, 3) in the setup frame at rotary angles (k, a) in rad."""
-    return poses_of(place, np.zeros((len(angle), 3)), angle, 0.0)[1]
+    return poses_of(work_position, np.zeros((len(angle), 3)), angle, 0.0)[1]
 
 
-def spindle_of(place: WorkPosition, angle: Floats) -> Floats:
+def spindle_of(work_position: WorkPosition, angle: Floats) -> Floats:
     """Return the tool's direction (k, 3) on the machine, X, Y, Z fixed to its bed, at rotary angles (k, a)."""
     axis = np.tile(UP, (len(angle), 1))
-    for k, rotary in reversed(list(enumerate(place.machine.rotary))):
+    for k, rotary in reversed(list(enumerate(work_position.machine.rotary))):
         if rotary.carries == "tool":
             axis = _turned(rotations(rotary, angle[:, k]), axis)
     return axis
 
 
-def lift_of(place: WorkPosition, angle: Floats) -> Floats:
+def lift_of(work_position: WorkPosition, angle: Floats) -> Floats:
     """Return where the machine's Z goes (3,), in the setup frame, with the rotary axes at angles (a,)."""
     up = UP[None]
-    for k, rotary in enumerate(place.machine.rotary):
+    for k, rotary in enumerate(work_position.machine.rotary):
         if rotary.carries == "work":
             up = _turned(rotations(rotary, -angle[k : k + 1]), up)
     return np.asarray(up[0])
@@ -171,16 +171,18 @@ def _both(one: Axis, two: Axis, v: Floats, w: Floats, sign: float) -> tuple[Floa
     size = np.hypot(p, q)
     is_free = size < POLE
     ratio = s / np.where(is_free, 1.0, size)
-    beside = np.where(
+    half_angle = np.where(
         is_free, 0.0, np.arctan2(np.sqrt(np.maximum((1.0 - ratio) * (1.0 + ratio), 0.0)), ratio)
     )
     middle = np.where(is_free, 0.0, np.arctan2(-q, p))
     held = np.where(is_free, np.abs(s) < POLE, np.abs(ratio) < 1.0 + POLE)
     angle, free = np.zeros((len(v), 2, 2)), np.zeros((len(v), 2, 2), bool)
-    for way, side in enumerate((1.0, -1.0)):
-        first = middle + side * beside
-        angle[:, way, 0], free[:, way, 0] = sign * first, is_free
-        angle[:, way, 1], free[:, way, 1] = _about(u2, v, _turned(rotations(one, -first), w))
+    for solution, side in enumerate((1.0, -1.0)):
+        first = middle + side * half_angle
+        angle[:, solution, 0], free[:, solution, 0] = sign * first, is_free
+        angle[:, solution, 1], free[:, solution, 1] = _about(
+            u2, v, _turned(rotations(one, -first), w)
+        )
     return angle, free, held
 
 

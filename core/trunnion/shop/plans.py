@@ -43,8 +43,8 @@ def load_plans(user_folder: Path | None) -> dict[str, TypicalPlan]:
     these before the program's, then by file name, then as they stand in the file. One replaces another of its name as a whole."""
     found = list(entries("plans", user_folder))
     folder = {entry.name: layer for layer, entry in found}
-    chosen = by_name(found)
-    return {name: _plan(chosen[name]) for name in sorted(chosen, key=lambda name: -folder[name])}
+    by_id = by_name(found)
+    return {name: _plan(by_id[name]) for name in sorted(by_id, key=lambda name: -folder[name])}
 
 
 def _plan(entry: CatalogueEntry) -> TypicalPlan:

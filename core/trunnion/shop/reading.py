@@ -23,7 +23,7 @@ class CatalogueEntry:
     file: str
     name: str
     fields: dict[str, Any]
-    _asked: set[str] = field(default_factory=set)
+    _read: set[str] = field(default_factory=set)
 
     def wrong(self, what: str) -> BadInput:
         """Return the error that names the file and this entry."""
@@ -107,14 +107,14 @@ class CatalogueEntry:
 
     def done(self) -> None:
         """Raise `BadInput` when a field is given that was not read: mostly a misspelt one."""
-        strange = sorted(set(self.fields) - self._asked)
+        strange = sorted(set(self.fields) - self._read)
         if strange:
             raise self.wrong(
-                f"{strange[0]} is not a field here; known: {', '.join(sorted(self._asked))}"
+                f"{strange[0]} is not a field here; known: {', '.join(sorted(self._read))}"
             )
 
     def _get(self, name: str, default: Any) -> Any:
-        self._asked.add(name)
+        self._read.add(name)
         if name not in self.fields:
             if default is None:
                 raise self.wrong(f"{name} is missing")
@@ -155,13 +155,13 @@ def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, Catalogu
 
 def by_name(found: Iterable[tuple[int, CatalogueEntry]]) -> dict[str, CatalogueEntry]:
     """Return entries by name, those of later folders over those of earlier ones; raise `BadInput` when one folder gives a name twice."""
-    chosen: dict[str, tuple[int, CatalogueEntry]] = {}
+    latest: dict[str, tuple[int, CatalogueEntry]] = {}
     for layer, entry in found:
-        earlier = chosen.get(entry.name)
+        earlier = latest.get(entry.name)
         if earlier is not None and earlier[0] == layer:
             raise entry.wrong(f"the name is given before in {earlier[1].file}")
-        chosen[entry.name] = (layer, entry)
-    return {name: entry for name, (_, entry) in chosen.items()}
+        latest[entry.name] = (layer, entry)
+    return {name: entry for name, (_, entry) in latest.items()}
 
 
 def _parsed(path: Traversable, label: str) -> dict[str, Any]:

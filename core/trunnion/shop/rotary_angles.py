@@ -19,14 +19,18 @@ TURN = 2.0 * math.pi
 
 
 def followed(
-    axis: Floats, place: WorkPosition, stand: Floats | None, near: float, operation: str
+    axis: Floats,
+    work_position: WorkPosition,
+    start_angle: Floats | None,
+    near: float,
+    operation: str,
 ) -> Floats:
     """Return the rotary angles (n, a) in rad at which a machine holds tool axes (n, 3), one after the other.
 
-    They go on from where the axes stand (a,) when that can be, else from the beginning that turns least. An axis within `near` rad of the
-    pole may be taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
+    They go on from where the axes start_angle (a,) when that can be, else from the beginning that turns least. An axis within `near` rad of
+    the pole may be taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
     """
-    machine = place.machine
+    machine = work_position.machine
     through = _through_pole(axis, machine, near)
     angles, free, held = rotary_solutions(machine, axis)
     lost = np.flatnonzero(~held)
@@ -36,34 +40,39 @@ def followed(
             f"operation {operation}, block {lost[0] + 1}: a tool axis that {machine.title} with {has}; lean it another way or "
             "choose another machine"
         )
-    low, high = place.limits
-    chosen = np.zeros((len(axis), len(machine.rotary)))
-    home = np.zeros(len(machine.rotary)) if stand is None else stand
+    low, high = work_position.limits
+    angles_used = np.zeros((len(axis), len(machine.rotary)))
+    home = np.zeros(len(machine.rotary)) if start_angle is None else start_angle
     tries: list[tuple[int, float, int, Floats]] = []
     # Spirals wind an axis up turn by turn: when it comes to its end it begins anew near the middle.
     unwound = (
         []
-        if stand is None
+        if start_angle is None
         else _beginnings(angles, free, np.clip(np.zeros(len(home)), low, high), low, high)
     )
-    for start in ([] if stand is None else [stand]) + [
+    for start in ([] if start_angle is None else [start_angle]) + [
         *_beginnings(angles, free, home, low, high),
         *unwound,
     ]:
-        reached, turned = choose_angles(angles, free, through, low, high, SLACK, start, chosen)
+        reached, turned = choose_angles(angles, free, through, low, high, SLACK, start, angles_used)
         if (
             reached == len(axis)
-            and start is stand
-            and np.abs(chosen[:1] - stand).max(initial=0.0) <= 2.0 * POLE
+            and start is start_angle
+            and np.abs(angles_used[:1] - start_angle).max(initial=0.0) <= 2.0 * POLE
         ):
-            return chosen
+            return angles_used
         tries.append(
-            (-reached, turned + float(np.abs(start - home).sum()), len(tries), np.array(chosen))
+            (
+                -reached,
+                turned + float(np.abs(start - home).sum()),
+                len(tries),
+                np.array(angles_used),
+            )
         )
     reached, _, _, best = min(tries, key=lambda t: t[:3])
     if -reached < len(axis):
         raise Refused(
-            f"operation {operation}, block {1 - reached}: {beyond(angles[-reached], place)}"
+            f"operation {operation}, block {1 - reached}: {beyond(angles[-reached], work_position)}"
         )
     return best
 
@@ -89,8 +98,11 @@ def _beginnings(
     if not len(fixed):
         return [np.clip(near, low, high)]
     found = []
-    for way in angles[fixed[0]]:
-        least, most = np.ceil((low - SLACK - way) / TURN), np.floor((high + SLACK - way) / TURN)
+    for solution in angles[fixed[0]]:
+        least, most = (
+            np.ceil((low - SLACK - solution) / TURN),
+            np.floor((high + SLACK - solution) / TURN),
+        )
         # Some turns about where the axes stand, and those at home when they are wound up to a limit.
         turns = [
             sorted(
@@ -101,18 +113,20 @@ def _beginnings(
                     if a <= n + k <= b
                 }
             )
-            for w, v, a, b in zip(way, near, least, most, strict=True)
+            for w, v, a, b in zip(solution, near, least, most, strict=True)
         ]
-        found += [way + TURN * np.array(n) for n in itertools.product(*turns)]
+        found += [solution + TURN * np.array(n) for n in itertools.product(*turns)]
     return found or [np.clip(near, low, high)]
 
 
-def beyond(ways: Floats, place: WorkPosition) -> str:
+def beyond(solutions: Floats, work_position: WorkPosition) -> str:
     """Return the angles that a pose needs and the limits of the axes."""
-    near = np.degrees(ways - TURN * np.round(ways / TURN))
-    asked = " or ".join(
-        " ".join(f"{a.name}{v:.1f}" for a, v in zip(place.machine.rotary, way, strict=True))
-        for way in near.tolist()
+    near = np.degrees(solutions - TURN * np.round(solutions / TURN))
+    ranges = " or ".join(
+        " ".join(
+            f"{a.name}{v:.1f}" for a, v in zip(work_position.machine.rotary, solution, strict=True)
+        )
+        for solution in near.tolist()
     )
-    has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in place.machine.rotary)
-    return f"its tool axis needs {asked}, which can't be reached from the block before; {place.machine.title} has {has}"
+    has = ", ".join(f"{a.name} {a.low:g} to {a.high:g}" for a in work_position.machine.rotary)
+    return f"its tool axis needs {ranges}, which can't be reached from the block before; {work_position.machine.title} has {has}"

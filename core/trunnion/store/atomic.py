@@ -34,22 +34,22 @@ def write_with(path: str | Path, fill: Callable[[BinaryIO], object]) -> None:
 
 
 def _write(target: Path, fill: Callable[[BinaryIO], object]) -> None:
-    beside = target.with_name(f".{target.name}.{os.getpid()}{_UNFINISHED}")
+    temporary = target.with_name(f".{target.name}.{os.getpid()}{_UNFINISHED}")
     try:
         _remove_unfinished(target)
-        with open(beside, "xb") as file:
+        with open(temporary, "xb") as file:
             fill(file)
             file.flush()
             os.fsync(file.fileno())
-        os.replace(beside, target)
+        os.replace(temporary, target)
         _sync_folder(target.parent)
     except OSError as reason:
-        _forget(beside)
+        _forget(temporary)
         raise BadInput(
             f"{target}: can't be written: {reason.strerror or reason}; the file there is as it was"
         ) from None
     except BaseException:
-        _forget(beside)
+        _forget(temporary)
         raise
 
 
@@ -61,10 +61,10 @@ def _forget(path: Path) -> None:
 def _remove_unfinished(target: Path) -> None:
     """Remove what writers left that no longer run."""
     mine = re.compile(re.escape(f".{target.name}.") + r"([0-9]+)" + re.escape(_UNFINISHED))
-    for left in target.parent.iterdir():
-        found = mine.fullmatch(left.name)
+    for leftover in target.parent.iterdir():
+        found = mine.fullmatch(leftover.name)
         if found and (int(found.group(1)) == os.getpid() or not _runs(int(found.group(1)))):
-            _forget(left)
+            _forget(leftover)
 
 
 def _runs(process: int) -> bool:

@@ -114,9 +114,9 @@ def _write(element: etree._Element, value: Any, hint: Any, members: Members) -> 
     elif dataclasses.is_dataclass(value):
         if picked is not _first_data(choices):
             element.set("type", picked.__name__)
-        left_out = unwritten(value)
+        omitted = unwritten(value)
         for name, own in hints_of(picked).items():
-            if name in left_out:
+            if name in omitted:
                 continue
             _write(
                 etree.SubElement(element, name.replace("_", "-")),
@@ -206,21 +206,21 @@ def _write_array(element: etree._Element, value: np.ndarray, members: Members) -
 
 def _read(element: etree._Element, hint: Any, members: Members) -> Any:
     choices = _choices(hint)
-    said = element.get("type")
-    if said == "none" and type(None) in choices:
+    type_name = element.get("type")
+    if type_name == "none" and type(None) in choices:
         return None
-    if said in _BY_NAME:
-        _allow(element, _BY_NAME[said], choices)
-        return _read_scalar(element, _BY_NAME[said], members)
+    if type_name in _BY_NAME:
+        _allow(element, _BY_NAME[type_name], choices)
+        return _read_scalar(element, _BY_NAME[type_name], members)
     named = {c.__name__: c for c in choices if _is_data(c)}
-    wanted = {"tuple": tuple, "mapping": Mapping, **named}.get(said or "")
+    wanted = {"tuple": tuple, "mapping": Mapping, **named}.get(type_name or "")
     picked = next(
         (c for c in choices if c is not type(None) and (wanted is None or _kind(c) is wanted)), None
     )
     kind = _kind(picked)
     if picked is None:
         raise BadInput(
-            f"line {element.sourceline}: <{element.tag}> says type {said}, which doesn't belong there"
+            f"line {element.sourceline}: <{element.tag}> says type {type_name}, which doesn't belong there"
         )
     if kind in _SCALARS:
         return _read_scalar(element, kind, members)

@@ -39,11 +39,11 @@ def text_of(value: Any) -> str:
 
 def attributes(data: Any) -> dict[str, str]:
     """Return the scalar fields of a dataclass as XML attributes, without those that files leave out."""
-    hints, left_out = hints_of(type(data)), unwritten(data)
+    hints, omitted = hints_of(type(data)), unwritten(data)
     return {
         name.replace("_", "-"): xml_text(text_of(hint(getattr(data, name))))
         for name, hint in hints.items()
-        if _is_scalar(hint) and name not in left_out
+        if _is_scalar(hint) and name not in omitted
     }
 
 

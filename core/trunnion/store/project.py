@@ -16,7 +16,7 @@ from lxml import etree
 
 from trunnion.findings import BadInput
 from trunnion.model.session import Session
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.store import xml
 from trunnion.store.atomic import write_bytes
 from trunnion.store.mapping import Members, from_xml, to_xml
@@ -37,7 +37,7 @@ def save_project(
     path: str | Path,
     part_bytes: bytes,
     part_suffix: str,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> None:
     """Write a session with its part file's bytes, whole or not at all."""
     data = progress.aside(
@@ -48,7 +48,7 @@ def save_project(
 
 
 def project_bytes(
-    session: Session, part_bytes: bytes, part_suffix: str, progress: Progress = QUIET
+    session: Session, part_bytes: bytes, part_suffix: str, progress: Progress = NO_PROGRESS
 ) -> bytes:
     """Return the bytes of a project file; raise `BadInput` for a suffix that no part file has."""
     name = f"part{part_suffix.lower()}"
@@ -75,7 +75,7 @@ def _entry(name: str) -> zipfile.ZipInfo:
     return entry
 
 
-def load_project(path: str | Path, progress: Progress = QUIET) -> tuple[Session, bytes, str]:
+def load_project(path: str | Path, progress: Progress = NO_PROGRESS) -> tuple[Session, bytes, str]:
     """Return the session of a project file, the bytes of its part file and their suffix; raise `BadInput` with one clear line."""
     path = Path(path)
     return progress.aside(lambda own: _loaded(path, own), f"opening {path.name}")

@@ -19,10 +19,10 @@ OPEN_MARGIN = 0.5
 """mm: a boundary that runs on past the wanted area by more than this is open there."""
 
 SPACING = 0.5
-"""mm between the places of a curve that are looked at; the ends of its parts are then found to `END`."""
+"""mm between the positions of a curve that are looked at; the ends of its parts are then found to `END`."""
 
 CLIP_SPACING = 1.0
-"""mm between the places that are looked at where a part's ends need not be exact: a clip is wider than what is wanted."""
+"""mm between the positions that are looked at where a part's ends need not be exact: a clip is wider than what is wanted."""
 
 END = tolerance.SHORT_MOVE
 """mm: how exactly the end of a part of a curve is found."""
@@ -39,33 +39,35 @@ class AxisRegion:
 
     @staticmethod
     def of(boundary: Region, distance: float, *, mitred: bool = False) -> AxisRegion:
-        """Return the room of an axis that keeps `distance` from the rim of `boundary`.
+        """Return the axis region that keeps `distance` from the rim of `boundary`.
 
         Round a sharp edge of the part the axis may go in an arc; when `mitred`, only straight on to where both its walls' passes meet: a
         fillet at the foot of such walls is mitred at their edge, and a cutter that went round would cut into the mitre.
         """
-        room = boundary.offset(-distance)
+        axis_region = boundary.offset(-distance)
         return AxisRegion(
-            room.minus(union_all(_mitres(boundary, distance))) if mitred and room else room
+            axis_region.minus(union_all(_mitres(boundary, distance)))
+            if mitred and axis_region
+            else axis_region
         )
 
     def depth(self, points: ArrayLike) -> Floats:
-        """Return how far inside the room points (k, 2) are (negative outside)."""
+        """Return how far inside the axis region points (k, 2) are (negative outside)."""
         return self.region.signed_distance(np.atleast_2d(np.asarray(points, dtype=np.float64)))
 
     def holds(self, points: ArrayLike) -> bool:
-        """Say whether all points (k, 2) are in the room, its rim included."""
+        """Return whether all points (k, 2) are in the axis region, its rim included."""
         return bool(self.region) and bool((self.depth(points) >= -tolerance.ON_REGION).all())
 
     def holds_line(self, start: ArrayLike, end: ArrayLike) -> bool:
-        """Say whether the straight way between two points (2,) stays in the room."""
+        """Return whether the straight path between two points (2,) stays in the axis region."""
         a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
         count = max(2, int(np.hypot(*(b - a)) / SPACING) + 2)
         return self.holds(a + np.linspace(0.0, 1.0, count)[:, None] * (b - a))
 
 
 def is_closed(level: DriveLevel) -> bool:
-    """Say whether a band's walls close it all round: its boundary does not run on past what is wanted."""
+    """Return whether a band's walls close it all round: its boundary does not run on past what is wanted."""
     return not level.boundary.minus(level.wanted.offset(OPEN_MARGIN))
 
 
@@ -76,11 +78,13 @@ def _mitres(boundary: Region, distance: float) -> list[Region]:
         seg = curve.segments()
         straight = np.isnan(seg.radius)
         before = np.roll(np.arange(len(seg)), 1)
-        ways = np.divide(seg.end - seg.start, seg.length[:, None])
-        turns = ways[before, 0] * ways[:, 1] - ways[before, 1] * ways[:, 0]
+        directions = np.divide(seg.end - seg.start, seg.length[:, None])
+        turns = directions[before, 0] * directions[:, 1] - directions[before, 1] * directions[:, 0]
         # The region lies on the left: where its rim turns right by more than a blend does, the part has a sharp edge.
         for k in np.flatnonzero(straight & straight[before] & (turns < -np.sin(tolerance.TANGENT))):
-            left = np.array([[-w[1], w[0]] for w in (ways[before[k]], ways[k])]) * distance
+            left = (
+                np.array([[-w[1], w[0]] for w in (directions[before[k]], directions[k])]) * distance
+            )
             along = left.sum(axis=0)
             tip = along * (2.0 * distance**2 / (along @ along))
             kites.append(

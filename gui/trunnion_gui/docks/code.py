@@ -17,7 +17,7 @@ from trunnion_gui.widgets.code import CodeView
 class CodeDock(QWidget):
     """The text of the chosen program; filled when it is looked at."""
 
-    line_chosen = Signal(str, int)
+    line_picked = Signal(str, int)
     """A clicked line: the suffix of the file it stands in, and its number from 1."""
 
     def __init__(self, document: Document) -> None:
@@ -97,7 +97,7 @@ class CodeDock(QWidget):
     def _choose(self, line: int) -> None:
         row = self.choice.currentIndex()
         if 0 <= row < len(self._shown):
-            self.line_chosen.emit(self._shown[row].suffix, line)
+            self.line_picked.emit(self._shown[row].suffix, line)
 
     def _read(self) -> None:
         row = self.choice.currentIndex()

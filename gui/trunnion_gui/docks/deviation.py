@@ -18,7 +18,7 @@ from trunnion_gui.worker.drawing import DrawnMap
 class DeviationDock(QWidget):
     """One row a place: what is wrong, how much, on which face of which feature, where."""
 
-    chosen = Signal(object)
+    picked = Signal(object)
     """A `WorstPoint` that a person wants to see."""
 
     def __init__(self, document: Document) -> None:
@@ -26,7 +26,7 @@ class DeviationDock(QWidget):
         self._document = document
         self._theme: Theme | None = None
         self.shown: DrawnMap | None = None
-        self.places: tuple[WorstPoint, ...] = ()
+        self.worst_points: tuple[WorstPoint, ...] = ()
         self.table: QTableWidget = tables.table(
             ["", tr("Deviation"), tr("Face"), tr("Feature"), "x", "y", "z"], stretched=(0, 3)
         )
@@ -37,7 +37,7 @@ class DeviationDock(QWidget):
         self._stack = QStackedLayout(self)
         self._stack.addWidget(self.table)
         self._stack.addWidget(self.empty)
-        self.table.cellClicked.connect(lambda row, _: self.chosen.emit(self.places[row]))
+        self.table.cellClicked.connect(lambda row, _: self.picked.emit(self.worst_points[row]))
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
@@ -47,17 +47,17 @@ class DeviationDock(QWidget):
     def show_map(self, shown: DrawnMap | None) -> None:
         """List the worst places of a map."""
         self.shown = shown
-        self.places = shown.map.worst if shown is not None else ()
+        self.worst_points = shown.map.worst if shown is not None else ()
         rows, drawn = [], []
-        for place in self.places:
-            is_gouge = place.deviation < 0.0
+        for worst in self.worst_points:
+            is_gouge = worst.deviation < 0.0
             rows.append(
                 (
                     tr("gouge") if is_gouge else tr("material left"),
-                    fine_amount(place.deviation),
-                    str(place.face),
-                    self._feature(place.face),
-                    *(f"{v:.2f}" for v in place.point),
+                    fine_amount(worst.deviation),
+                    str(worst.face),
+                    self._feature(worst.face),
+                    *(f"{v:.2f}" for v in worst.point),
                 )
             )
             drawn.append(icons.icon("gouge" if is_gouge else "left_over", self._colour(is_gouge)))

@@ -47,8 +47,8 @@ class FeatureDock(QWidget):
         self.tree: QTreeWidget = tree([""] * (_FIRST_OWN + len(self._columns)))
         self.tree.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         tips = (tr("Faces"), tr("Size in mm"), *(column.tip for _, column in self._columns))
-        for place, words in enumerate(tips, 1):
-            self.tree.headerItem().setToolTip(place, words)
+        for number, words in enumerate(tips, 1):
+            self.tree.headerItem().setToolTip(number, words)
         self.line = QLineEdit()
         self.line.setPlaceholderText(tr("Select by ID: group-05, face 12"))
         self.line.setClearButtonEnabled(True)
@@ -128,8 +128,8 @@ class FeatureDock(QWidget):
                 *(column.title for _, column in self._columns),
             ]
         )
-        for place, (view, _) in enumerate(self._columns, _FIRST_OWN):
-            self.tree.setColumnHidden(place, view not in present)
+        for number, (view, _) in enumerate(self._columns, _FIRST_OWN):
+            self.tree.setColumnHidden(number, view not in present)
 
     def _add_class(self, shown: FeatureClass, colours: dict[str, str], folded: bool) -> None:
         top = QTreeWidgetItem([shown.words, str(len(shown.features)), ""])
@@ -155,11 +155,11 @@ class FeatureDock(QWidget):
         item.setToolTip(
             0, ", ".join(f"{role} {tag}" for role, tag in ((x.role, x.face) for x in f.faces))
         )
-        for place in range(1, _FIRST_OWN):
-            item.setTextAlignment(place, RIGHT)
-        for place, (owner, column) in enumerate(self._columns, _FIRST_OWN):
+        for number in range(1, _FIRST_OWN):
+            item.setTextAlignment(number, RIGHT)
+        for number, (owner, column) in enumerate(self._columns, _FIRST_OWN):
             if owner is view:
-                _fill_cell(item, place, column, f)
+                _fill_cell(item, number, column, f)
         if view.has_own_colours:
             item.setIcon(0, colour_icon(colours[f.id]))
         if f.by_hand:
@@ -174,10 +174,10 @@ class FeatureDock(QWidget):
                 tr("write IDs as in the table, with commas between them"),
             )
 
-    def _click(self, item: QTreeWidgetItem, place: int) -> None:
+    def _click(self, item: QTreeWidgetItem, number: int) -> None:
         feature = self._document.feature(item.data(0, _ID))
-        if feature is not None and place >= _FIRST_OWN:
-            owner, column = self._columns[place - _FIRST_OWN]
+        if feature is not None and number >= _FIRST_OWN:
+            owner, column = self._columns[number - _FIRST_OWN]
             if column.click is not None and self._views.of(feature) is owner:
                 column.click(feature)
 
@@ -208,16 +208,16 @@ class FeatureDock(QWidget):
             self.menu(feature).popup(self.tree.viewport().mapToGlobal(at))
 
 
-def _fill_cell(item: QTreeWidgetItem, place: int, column: Column, feature: Feature) -> None:
+def _fill_cell(item: QTreeWidgetItem, number: int, column: Column, feature: Feature) -> None:
     """Write what a family's own column says of a feature into its row."""
     if column.is_ticked is not None:
         item.setCheckState(
-            place, Qt.CheckState.Checked if column.is_ticked(feature) else Qt.CheckState.Unchecked
+            number, Qt.CheckState.Checked if column.is_ticked(feature) else Qt.CheckState.Unchecked
         )
         item.setFlags(
             item.flags() & ~Qt.ItemFlag.ItemIsUserCheckable
         )  # a click is an edit of the session, not of the row
         return
-    item.setText(place, column.words(feature))
-    item.setTextAlignment(place, RIGHT)
-    item.setToolTip(place, column.cell_tip(feature))
+    item.setText(number, column.words(feature))
+    item.setTextAlignment(number, RIGHT)
+    item.setToolTip(number, column.cell_tip(feature))

@@ -27,12 +27,12 @@ class ListingDock(QPlainTextEdit):
 
     def refresh(self) -> None:
         """Show the selected operation's motions, if anybody looks."""
-        chosen, session = self._document.selection.current, self._document.shown
-        path = session.path_of(chosen.id) if chosen.kind == "operation" else None
+        selected, session = self._document.selection.current, self._document.shown
+        path = session.path_of(selected.id) if selected.kind == "operation" else None
         if not self.isVisible() or path is self._shown:
             return
         self._shown = path
-        self.setPlainText(operation_listing(session, chosen.id) if path is not None else "")
+        self.setPlainText(operation_listing(session, selected.id) if path is not None else "")
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)

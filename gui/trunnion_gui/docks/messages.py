@@ -67,7 +67,7 @@ class MessagesDock(QWidget):
         self.findings = listed
         tables.fill(
             self.table,
-            [("", f.text, f.place, f.remedy, f.code, "") for f in listed],
+            [("", f.text, f.location, f.remedy, f.code, "") for f in listed],
             icons=[icons.icon(f.severity.value, self._colour(f.severity)) for f in listed],
         )
         for row, finding in enumerate(listed):

@@ -48,7 +48,7 @@ class PlaybackBar(QWidget):
         self._load = np.zeros(0)
         self.track = TimelineSlider(theme)
         self.speed, self.mode = QComboBox(), QComboBox()
-        self.place, self.clock, self.amount = QLabel(), QLabel(), QLabel()
+        self.position_label, self.clock, self.amount = QLabel(), QLabel(), QLabel()
         self._fill_choices()
         column = QVBoxLayout(self)
         column.setContentsMargins(10, 2, 12, 4)
@@ -60,7 +60,7 @@ class PlaybackBar(QWidget):
         self._soon = QTimer(self)
         self._soon.setSingleShot(True)
         self._soon.setInterval(_WORDS_MS)
-        self._soon.timeout.connect(self._say)
+        self._soon.timeout.connect(self._show_position)
         self.track.wanted.connect(player.go)
         self.track.stepped.connect(player.step)
         player.opened.connect(self._open)
@@ -125,8 +125,8 @@ class PlaybackBar(QWidget):
     def _words(self) -> QHBoxLayout:
         row = QHBoxLayout()
         row.setContentsMargins(8, 0, 6, 0)
-        self.place.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
-        row.addWidget(self.place, 1)
+        self.position_label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        row.addWidget(self.position_label, 1)
         for label in (self.amount, self.clock):
             label.setObjectName("muted")
             label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -140,7 +140,7 @@ class PlaybackBar(QWidget):
             self.track.show_marks(0.0, (), (), ())
             self._load = np.zeros(0)
             self.track.show_load(self._load, np.zeros(0, bool))
-            self.place.setText("")
+            self.position_label.setText("")
             self.amount.setText("")
             self.clock.setText("")
             return
@@ -155,7 +155,7 @@ class PlaybackBar(QWidget):
             )
             + 8
         )
-        self._say()
+        self._show_position()
 
     def _move(self, position: float) -> None:
         self.track.show_value(position)
@@ -168,7 +168,7 @@ class PlaybackBar(QWidget):
         if not self._soon.isActive():
             self._soon.start()
 
-    def _say(self) -> None:
+    def _show_position(self) -> None:
         line, position = self._player.timeline, self._player.position
         if line is None:
             return
@@ -183,12 +183,12 @@ class PlaybackBar(QWidget):
             else ""
         )
         words = " · ".join(w for w in (number, text, passage.operation, rate) if w)
-        self.place.setText(
-            self.place.fontMetrics().elidedText(
-                words, Qt.TextElideMode.ElideRight, self.place.width()
+        self.position_label.setText(
+            self.position_label.fontMetrics().elidedText(
+                words, Qt.TextElideMode.ElideRight, self.position_label.width()
             )
         )
-        self.place.setToolTip(
+        self.position_label.setToolTip(
             f"{passage.operation} · {passage.setup} · T{passage.tool.number} {passage.tool.name}"
         )
         self.amount.setText(tr("{n} cm³ removed").format(n=grouped(round(self._removed / 1000.0))))

@@ -184,9 +184,9 @@ class ProcessDock(QWidget):
         )
 
     def _choose(self) -> None:
-        chosen = self.tree.selectedItems()
-        if chosen and chosen[0].data(0, _ID):
-            self._document.selection.select_operation(chosen[0].data(0, _ID))
+        items = self.tree.selectedItems()
+        if items and items[0].data(0, _ID):
+            self._document.selection.select_operation(items[0].data(0, _ID))
 
     def _follow(self, selection: Selection) -> None:
         item = self._items.get(selection.id) if selection.kind == "operation" else None

@@ -78,33 +78,33 @@ class PropertiesDock(QScrollArea):
 
     def refresh(self) -> None:
         """Show the properties of the selection."""
-        chosen, document = self._document.selection.current, self._document
-        feature, operation = document.feature(chosen.id), document.operation(chosen.id)
-        if chosen.kind == "feature" and feature:
+        selected, document = self._document.selection.current, self._document
+        feature, operation = document.feature(selected.id), document.operation(selected.id)
+        if selected.kind == "feature" and feature:
             self._show(feature.id, sentence(tr(kind_label(feature.kind))), feature_rows(feature))
-        elif chosen.kind == "operation" and operation:
+        elif selected.kind == "operation" and operation:
             self._show(
                 operation.id,
                 f"{sentence(tr(kind_words(operation.kind)))} · {operation.feature}",
                 self._operation_rows(operation),
             )
-        elif chosen.kind == "faces":
-            rows = self._owner_rows(chosen.faces)
+        elif selected.kind == "faces":
+            rows = self._owner_rows(selected.faces)
             self._show(
-                chosen.id,
-                "" if rows or len(chosen.faces) != 1 else tr("no feature has this face"),
+                selected.id,
+                "" if rows or len(selected.faces) != 1 else tr("no feature has this face"),
                 rows,
             )
         else:
             self._show("", tr("Click a feature or an operation, in the picture or in a table."), [])
         rules = (
             (*operation.rules, *operation.data.rules)
-            if chosen.kind == "operation" and operation
+            if selected.kind == "operation" and operation
             else ()
         )
         self.rules.setText(tr("Why: {reasons}").format(reasons="; ".join(rules)))
         self.rules.setVisible(bool(rules))
-        self._show_form(operation if chosen.kind == "operation" else None)
+        self._show_form(operation if selected.kind == "operation" else None)
 
     def _show(self, title: str, subtitle: str, rows: Rows) -> None:
         self.title.setText(title)

@@ -42,7 +42,7 @@ class Document(QObject):
     """The part is the same, its faces are others: one was cut, or a cut was taken back."""
     noticed = Signal(object)
     """A `Finding` about the program itself: a failure, a crash, a refusal."""
-    said = Signal(str)
+    reported = Signal(str)
     """Words on what came of a job."""
 
     def __init__(self, factory: str = ENGINE, parent: QObject | None = None) -> None:
@@ -110,7 +110,7 @@ class Document(QObject):
 
     def run(self, last: str, label: str) -> None:
         """Compute what is stale up to and including a step. Called while a file is being opened, it runs right after."""
-        if self.jobs.job is not None and self.jobs.job.verb == "open":
+        if self.jobs.job is not None and self.jobs.job.command == "open":
             self.jobs.after(lambda: self.run(last, tr("Program")))
         elif self.is_ready():
             if self._is_done(last):
@@ -183,7 +183,7 @@ class Document(QObject):
         if session is not self.session:
             self.history.push(label, session, gesture)
             self._show(session)
-            self._ask_states()
+            self._request_states()
 
     def choose(self, key: str, label: str, value: Value, gesture: str = "") -> None:
         """Choose a setting by its full key."""
@@ -193,13 +193,13 @@ class Document(QObject):
         """Take the last edit or run back."""
         if self.jobs.is_free():
             self._show(self.history.undo())
-            self._ask_states()
+            self._request_states()
 
     def redo(self) -> None:
         """Bring back what was undone."""
         if self.jobs.is_free():
             self._show(self.history.redo())
-            self._ask_states()
+            self._request_states()
 
     # inside
 
@@ -218,7 +218,7 @@ class Document(QObject):
             self.states.get(s) in ("done", "problem") for s in until(last)
         )
 
-    def _ask_states(self) -> None:
+    def _request_states(self) -> None:
         self.jobs.forget("states")
         if self.has_part:
             self.jobs.query("states", self.session, finish=self._take_states)

@@ -28,7 +28,7 @@ class Job:
     """A piece of work that runs: its request number, verb, label, when it started (s), and what is done with its answer."""
 
     number: int
-    verb: str | Work
+    command: str | Work
     label: str
     started: float
     finish: Finish
@@ -75,10 +75,12 @@ class Jobs(QObject):
             )
         return self.job is None
 
-    def start(self, verb: str | Work, label: str, *arguments: Any, finish: Finish) -> None:
+    def start(self, command: str | Work, label: str, *arguments: Any, finish: Finish) -> None:
         """Begin a job; `finish` gets what it returns when it is done."""
         self._doing = ""
-        self.job = Job(self.worker.send(verb, *arguments), verb, label, time.monotonic(), finish)
+        self.job = Job(
+            self.worker.send(command, *arguments), command, label, time.monotonic(), finish
+        )
         self.changed.emit()
         self.progressed.emit(0.0, label)
 
@@ -93,17 +95,17 @@ class Jobs(QObject):
         """Do something right after the running job is done; never when it stops short."""
         self._then = go_on
 
-    def query(self, verb: str, *arguments: Any, finish: Finish) -> None:
+    def query(self, command: str, *arguments: Any, finish: Finish) -> None:
         """Send a query that blocks nothing; `finish` gets its reply."""
-        self._queries[self.worker.send(verb, *arguments)] = verb, finish
+        self._queries[self.worker.send(command, *arguments)] = command, finish
 
-    def awaits(self, verb: str) -> bool:
+    def awaits(self, command: str) -> bool:
         """Return whether a query of a verb has no reply yet."""
-        return any(asked == verb for asked, _ in self._queries.values())
+        return any(running == command for running, _ in self._queries.values())
 
-    def forget(self, verb: str) -> None:
+    def forget(self, command: str) -> None:
         """Drop the queries of a verb."""
-        for number in [n for n, (asked, _) in self._queries.items() if asked == verb]:
+        for number in [n for n, (running, _) in self._queries.items() if running == command]:
             self.worker.forget(number)
             del self._queries[number]
 

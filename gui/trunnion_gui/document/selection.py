@@ -92,8 +92,8 @@ class SelectionModel(QObject):
     def toggle_face(self, tag: int) -> None:
         """Take one more face into the selection, or out of it again."""
         if tag:
-            chosen = self.current.faces if self.current.kind in ("faces", "feature") else ()
-            faces = tuple(t for t in chosen if t != tag) if tag in chosen else (*chosen, tag)
+            selected = self.current.faces if self.current.kind in ("faces", "feature") else ()
+            faces = tuple(t for t in selected if t != tag) if tag in selected else (*selected, tag)
             self.select(
                 Selection("faces", ", ".join(f"face {t}" for t in faces), faces)
                 if faces
@@ -115,9 +115,9 @@ class SelectionModel(QObject):
 
     def follow(self) -> None:
         """Drop a selection whose feature or operation is gone, follow one whose faces changed."""
-        chosen = self.current
-        if chosen.kind == "feature":
-            found = self._document.feature(chosen.id)
-            self.select(replace(chosen, faces=found.tags) if found else NOTHING)
-        elif chosen.kind == "operation" and self._document.operation(chosen.id) is None:
+        selected = self.current
+        if selected.kind == "feature":
+            found = self._document.feature(selected.id)
+            self.select(replace(selected, faces=found.tags) if found else NOTHING)
+        elif selected.kind == "operation" and self._document.operation(selected.id) is None:
             self.select(NOTHING)

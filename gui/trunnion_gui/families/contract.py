@@ -139,10 +139,10 @@ class FamilyView:
     def use_theme(self, theme: Theme) -> None:
         """Draw docks and blocks in the colours of a theme."""
 
-    def add_commands(self, shell: WindowAccess) -> None:
+    def add_commands(self, window: WindowAccess) -> None:
         """Add commands to a window's registry; what they reach of the window is made later."""
 
-    def begin(self, shell: WindowAccess) -> None:
+    def begin(self, window: WindowAccess) -> None:
         """Take up work in a window whose picture is there, before its panels and docks are."""
 
 

@@ -99,12 +99,12 @@ def tool_cycle(numbers: Sequence[int]) -> tuple[str, ...]:
     return tuple(wheel[rows[number] % len(wheel)] for number in numbers)
 
 
-def stock_colours(chosen: Theme) -> tuple[str, str]:
+def stock_colours(new_theme: Theme) -> tuple[str, str]:
     """Return the colours of the blank's own surface and of what was cut."""
     raw, cut = (_palette()["stock"][name] for name in ("blank", "cut"))
     return (
-        (mixed(raw, chosen.part, 0.3), mixed(cut, chosen.part, 0.3))
-        if chosen.name == "dark"
+        (mixed(raw, new_theme.part, 0.3), mixed(cut, new_theme.part, 0.3))
+        if new_theme.name == "dark"
         else (raw, cut)
     )
 

@@ -21,10 +21,10 @@ def names() -> dict[str, str]:
     return json.loads((files("trunnion_resources") / "icons" / "icons.json").read_text("utf-8"))
 
 
-def use_theme(chosen: Theme) -> None:
+def use_theme(new_theme: Theme) -> None:
     """Draw icons from now on in the colours of a theme."""
     global _theme
-    _theme = chosen
+    _theme = new_theme
 
 
 def icon(name: str, colour: str = "") -> QIcon:

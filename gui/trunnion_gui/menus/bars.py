@@ -66,7 +66,7 @@ def _add_recent(menu: QMenu, open: Callable[[str], object]) -> None:
         for path in preferences.recent():
             entry = menu.addAction(Path(path).name)
             entry.setToolTip(path)
-            entry.triggered.connect(lambda _=False, chosen=path: open(chosen))
+            entry.triggered.connect(lambda _=False, file=path: open(file))
 
     menu.aboutToShow.connect(fill)
 

@@ -39,9 +39,9 @@ _LAYERS = (
 """Name, words, keys, whether it is on at first."""
 
 
-def add_general_commands(shell: WindowAccess) -> None:
+def add_general_commands(window: WindowAccess) -> None:
     """Add them to a window's registry."""
-    document, add, do = shell.document, shell.registry.add, shell.handlers
+    document, add, do = window.document, window.registry.add, window.handlers
 
     def has_part() -> bool:
         return document.has_part and not document.is_busy
@@ -52,7 +52,7 @@ def add_general_commands(shell: WindowAccess) -> None:
     def has_program() -> bool:
         return has_part() and bool(document.session.posted)
 
-    def has_chosen(*kinds: str) -> bool:
+    def has_selected(*kinds: str) -> bool:
         return is_free() and document.selection.current.kind in kinds
 
     def command(
@@ -139,7 +139,7 @@ def add_general_commands(shell: WindowAccess) -> None:
         "Write what the viewport shows as PNG",
         None,
     )
-    command("file.quit", "Quit", shell.close, "quit", "Ctrl+Q", "", None)
+    command("file.quit", "Quit", window.close, "quit", "Ctrl+Q", "", None)
     command(
         "edit.undo",
         "Undo",
@@ -165,7 +165,7 @@ def add_general_commands(shell: WindowAccess) -> None:
         "delete",
         "Del",
         "",
-        partial(has_chosen, "feature", "operation"),
+        partial(has_selected, "feature", "operation"),
     )
     command(
         "edit.suppress",
@@ -174,7 +174,7 @@ def add_general_commands(shell: WindowAccess) -> None:
         "suppress",
         "Ctrl+D",
         "Keep the selected operation in the tree without cutting it",
-        partial(has_chosen, "operation"),
+        partial(has_selected, "operation"),
     )
     command("edit.none", "Select nothing", do.leave, "", "Escape", "", None)
     command(
@@ -209,7 +209,7 @@ def add_general_commands(shell: WindowAccess) -> None:
         command(
             f"view.{view}",
             f"View: {view}",
-            lambda view=view: shell.viewport.scene.look(view),  # type: ignore[misc]
+            lambda view=view: window.viewport.scene.look(view),  # type: ignore[misc]
             view,
             f"Ctrl+{number}",
             "",
@@ -218,7 +218,7 @@ def add_general_commands(shell: WindowAccess) -> None:
     command(
         "view.fit",
         "Fit",
-        lambda: shell.viewport.scene.fit(),
+        lambda: window.viewport.scene.fit(),
         "fit",
         "F",
         "Fit the part into the picture",
@@ -226,29 +226,29 @@ def add_general_commands(shell: WindowAccess) -> None:
     )
 
     def show_layer(name: str) -> Callable[[bool], object]:
-        return lambda on: shell.viewport.show_layer(name, on)
+        return lambda on: window.viewport.show_layer(name, on)
 
     for name, text, keys, on in _LAYERS:
         switch(name, text, show_layer(name), keys, checked=on)
     switch(
         "section",
         "Section",
-        lambda on: shell.viewport.show_section(on),
+        lambda on: window.viewport.show_section(on),
         "X",
         "Cut the part open across its height",
     )
     switch(
         "deviation",
         "Deviation map",
-        shell.show_deviation,
+        window.show_deviation,
         "D",
         "Colour the part by gouges and material left, as the proof measured them",
-        enabled=lambda: shell.deviation.can_show or shell.deviation.is_on,
+        enabled=lambda: window.deviation.can_show or window.deviation.is_on,
     )
     command(
         "view.find",
         "Find a command…",
-        lambda: shell.finder.open(),
+        lambda: window.finder.open(),
         "search",
         "Ctrl+Shift+P",
         "",

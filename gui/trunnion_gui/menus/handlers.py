@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 class Handlers:
     """Commands that need more than one call of a part of the window."""
 
-    def __init__(self, shell: WindowAccess) -> None:
-        self._shell, self._document = shell, shell.document
+    def __init__(self, window: WindowAccess) -> None:
+        self._window, self._document = window, window.document
 
     def open(self) -> None:
         """Choose a file and open it."""
-        path = self._shell.dialogs.open_path()
+        path = self._window.dialogs.open_path()
         if path:
             self._document.files.open(path)
 
@@ -47,21 +47,21 @@ class Handlers:
 
     def save_as(self) -> None:
         """Ask where to save the project."""
-        path = self._shell.dialogs.save_path()
+        path = self._window.dialogs.save_path()
         if path:
             self._document.files.save(path if path.endswith(PROJECT) else path + PROJECT)
 
     def write(self) -> None:
         """Ask for a folder and write everything there."""
-        folder = self._shell.dialogs.folder()
+        folder = self._window.dialogs.folder()
         if folder:
             self._document.files.write(folder)
 
     def keep_picture(self) -> None:
         """Ask for a file and write what the viewport shows."""
-        path = self._shell.dialogs.picture_path()
+        path = self._window.dialogs.picture_path()
         if path:
-            self._shell.viewport.scene.save_picture(path)
+            self._window.viewport.scene.save_picture(path)
 
     def program(self) -> None:
         """Do the whole line; without a part, choose one first."""
@@ -73,14 +73,14 @@ class Handlers:
 
     def delete_selected(self) -> None:
         """Delete the selected feature or operation."""
-        chosen = self._document.selection.current
-        edit = edits.without_feature if chosen.kind == "feature" else edits.without_operation
-        if chosen.kind in ("feature", "operation"):
-            self._document.edit(tr("Delete {id}").format(id=chosen.id), edit(chosen.id))
+        selected = self._document.selection.current
+        edit = edits.without_feature if selected.kind == "feature" else edits.without_operation
+        if selected.kind in ("feature", "operation"):
+            self._document.edit(tr("Delete {id}").format(id=selected.id), edit(selected.id))
 
     def leave(self) -> None:
         """Put away what is being done in the picture; else select nothing."""
-        if not self._shell.viewport.end_tool():
+        if not self._window.viewport.end_tool():
             self._document.selection.select_face(0)
 
     def suppress_selected(self) -> None:
@@ -95,9 +95,9 @@ class Handlers:
 
     def change_theme(self) -> None:
         """Change between light and dark."""
-        name = "dark" if self._shell.theme.name == "light" else "light"
+        name = "dark" if self._window.theme.name == "light" else "light"
         preferences.remember("theme", name)
-        self._shell.use_theme(colours.theme(name))
+        self._window.use_theme(colours.theme(name))
 
     def change_language(self) -> None:
         """Take the next language; it is spoken from the next start on."""
@@ -111,7 +111,7 @@ class Handlers:
 
     def forget_arrangement(self) -> None:
         """Put docks back where they were at first."""
-        self._shell.arrangement.forget()
+        self._window.arrangement.forget()
 
     def about(self) -> None:
         """Say what this is."""

@@ -8,14 +8,14 @@ from trunnion_gui.actions import Command
 from trunnion_gui.menus.window_access import WindowAccess
 
 
-def add_playback_commands(shell: WindowAccess) -> None:
+def add_playback_commands(window: WindowAccess) -> None:
     """Add them to a window's registry."""
-    player = shell.player
+    player = window.player
 
     def command(
         id: str, text: str, run: Callable[[], object], icon: str, keys: str, help: str = ""
     ) -> None:
-        shell.registry.add(
+        window.registry.add(
             Command(
                 id=f"play.{id}",
                 text=text,
@@ -28,11 +28,11 @@ def add_playback_commands(shell: WindowAccess) -> None:
             )
         )
 
-    shell.registry.add(
+    window.registry.add(
         Command(
             id="play.show",
             text="Playback",
-            run=shell.show_playback,
+            run=window.show_playback,
             icon="playback",
             keys="P",
             checkable=True,

@@ -33,9 +33,9 @@ class RecognizePanel(Panel):
         self.content.addWidget(self.solid)
         super().build()
         self.go_on = QWidget()
-        self._answers = QHBoxLayout(self.go_on)
-        self._answers.setContentsMargins(0, 0, 0, 0)
-        self._answers.setSpacing(6)
+        self._actions = QHBoxLayout(self.go_on)
+        self._actions.setContentsMargins(0, 0, 0, 0)
+        self._actions.setSpacing(6)
         self._offered: tuple[str, ...] = ()
         self.content.addWidget(self.go_on)
 
@@ -73,13 +73,13 @@ class RecognizePanel(Panel):
         offered = tuple(sorted(families, key=lambda name: found is None or name != found.family))
         if offered != self._offered:
             self._offered = offered
-            empty(self._answers)
+            empty(self._actions)
             for name in offered:
                 button = QPushButton(tr("Go on as {family}").format(family=tr(name)))
                 button.setProperty("family", name)
                 button.setToolTip(tr("Choose this family of parts and recognize again"))
                 button.clicked.connect(lambda _=False, family=name: self._go_on_as(family))
-                self._answers.addWidget(button)
+                self._actions.addWidget(button)
         self.go_on.setVisible(bool(offered))
         self.go_on.setEnabled(not self.document.is_busy)
 

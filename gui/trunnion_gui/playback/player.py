@@ -26,7 +26,7 @@ _LONGEST_TICK_S = 0.25
 """A tick that was held up moves the tool no further than this."""
 _LEAST_LEAD_S, _MOST_LEAD_S = 0.08, 1.0
 """How far ahead of the tool, in the person's time, the stock is requested: a little more than the worker needs."""
-_ANSWER_S = 0.25
+_RESPONSE_S = 0.25
 """Time after which the worker shows how far it got."""
 
 
@@ -51,8 +51,8 @@ class Player(QObject):
         self.by_block = False
         self.is_on = False
         self._source: tuple[Any, ...] = ()
-        self._asked = 0
-        self._asked_at, self._asked_for = 0.0, 0.0
+        self._requested = 0
+        self._requested_at, self._requested_for = 0.0, 0.0
         self._opening = 0
         self._ahead: Moment | None = None
         self._stock_at = -1.0
@@ -108,7 +108,13 @@ class Player(QObject):
     def forget(self) -> None:
         """Let the timeline go; it is requested again when needed."""
         self.pause()
-        self.timeline, self._source, self._opening, self._asked, self._ahead = None, (), 0, 0, None
+        self.timeline, self._source, self._opening, self._requested, self._ahead = (
+            None,
+            (),
+            0,
+            0,
+            None,
+        )
         self._stock_at = -1.0
         self.opened.emit()
 
@@ -122,7 +128,7 @@ class Player(QObject):
         self._ahead = None
         self._timer.start()
         self.changed.emit()
-        self._ask()
+        self._request()
 
     def pause(self) -> None:
         """Stop where the tool is."""
@@ -130,7 +136,7 @@ class Player(QObject):
             self._timer.stop()
             self._ahead = None
             self.changed.emit()
-            self._ask()
+            self._request()
 
     def toggle(self) -> None:
         """Play, or pause."""
@@ -140,7 +146,7 @@ class Player(QObject):
         """Put the tool at a position; the stock follows."""
         self._ahead = None
         self._move(min(max(position, 0.0), self.end))
-        self._ask()
+        self._request()
 
     def step(self, blocks: int) -> None:
         """Go some whole blocks on or back."""
@@ -206,7 +212,7 @@ class Player(QObject):
         session = self._document.session
         source = (session.paths, session.posted, session.process, session.blank)
         if len(source) == len(self._source) and all(a is b for a, b in zip(source, self._source)):
-            self._ask()
+            self._request()
             return
         if not self.can_play:
             self.forget()
@@ -227,18 +233,18 @@ class Player(QObject):
         bound = (
             self._ahead.position
             if self._ahead is not None
-            else self._asked_for
-            if self._asked
+            else self._requested_for
+            if self._requested
             else self.end
         )
         self._move(max(min(self._after(self.position, passed), bound), self.position))
         if self._ahead is not None and self.position >= self._ahead.position:
             self._show(self._ahead)
-        if self._ahead is None and not self._asked:
+        if self._ahead is None and not self._requested:
             if self.position >= self.end:
                 self.pause()
             else:
-                self._ask()
+                self._request()
 
     def _move(self, position: float) -> None:
         self.position = position
@@ -248,37 +254,37 @@ class Player(QObject):
         self._ahead, self._stock_at = None, moment.position
         self.cut.emit(moment)
 
-    def _ask(self) -> None:
+    def _request(self) -> None:
         """Request the stock where the tool is, or where it will be when the reply comes; one request at a time."""
-        if self.timeline is None or self._asked or self._document.is_busy:
+        if self.timeline is None or self._requested or self._document.is_busy:
             return
         wanted = self._after(self.position, self._lead) if self.is_playing else self.position
         if wanted != self._stock_at:
-            self._asked_at, self._asked_for = time.perf_counter(), wanted
-            self._asked = self._document.jobs.worker.send(
-                "moment", self.timeline.key, wanted, _ANSWER_S
+            self._requested_at, self._requested_for = time.perf_counter(), wanted
+            self._requested = self._document.jobs.worker.send(
+                "moment", self.timeline.key, wanted, _RESPONSE_S
             )
 
     def _receive(self, reply: Reply) -> None:
-        if not reply.is_last or reply.number not in (self._opening, self._asked):
+        if not reply.is_last or reply.number not in (self._opening, self._requested):
             return
         if reply.number == self._opening:
             self._opening = 0
             self._open(reply)
             return
-        self._asked = 0
+        self._requested = 0
         if reply.kind != "done":
             self._source = ()
             if reply.kind == "failed":
                 self._document.notice(reply.text)
             return
-        needed = time.perf_counter() - self._asked_at
+        needed = time.perf_counter() - self._requested_at
         self._lead = min(max(0.5 * self._lead + 0.6 * needed, _LEAST_LEAD_S), _MOST_LEAD_S)
         if self.is_playing and reply.value.position > self.position:
             self._ahead = reply.value
         else:
             self._show(reply.value)
-            self._ask()
+            self._request()
 
     def _open(self, reply: Reply) -> None:
         if reply.kind != "done":

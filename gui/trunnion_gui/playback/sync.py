@@ -26,7 +26,7 @@ class PlaybackSync(QObject):
         self.soon.timeout.connect(self._follow)
         player.moved.connect(lambda _: self.soon.isActive() or self.soon.start())
         player.opened.connect(self._follow)
-        code.line_chosen.connect(self._go_to_line)
+        code.line_picked.connect(self._go_to_line)
 
     def _follow(self) -> None:
         line, position = self._player.timeline, self._player.position

@@ -44,11 +44,11 @@ class Autosave:
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="autosave")
 
     def keep(
-        self, session: Session, data: bytes, suffix: str, whose: AutosaveOwner
+        self, session: Session, data: bytes, suffix: str, owner: AutosaveOwner
     ) -> Future[None]:
         """Write a session with its part file's bytes and suffix, unless a newer one is requested before its turn comes."""
         self._newest += 1
-        return self._writer.submit(self._keep, self._newest, session, data, suffix, whose)
+        return self._writer.submit(self._keep, self._newest, session, data, suffix, owner)
 
     def forget(self) -> Future[None]:
         """Remove the file: the work is saved elsewhere, or given up."""
@@ -61,13 +61,13 @@ class Autosave:
         self._writer.shutdown(wait=True)
 
     def _keep(
-        self, number: int, session: Session, data: bytes, suffix: str, whose: AutosaveOwner
+        self, number: int, session: Session, data: bytes, suffix: str, owner: AutosaveOwner
     ) -> None:
         if number != self._newest:
             return
         try:
             save_project(session, self._path, data, suffix)
-            write_text(notes_of(self._path), json.dumps(asdict(whose)))
+            write_text(notes_of(self._path), json.dumps(asdict(owner)))
         except TrunnionError as reason:
             self._failed(str(reason))
 
@@ -77,7 +77,7 @@ def notes_of(path: Path) -> Path:
     return path.with_suffix(".json")
 
 
-def whose_work(path: Path) -> AutosaveOwner:
+def autosave_owner(path: Path) -> AutosaveOwner:
     """Return whose work an autosave is; where its notes are missing or damaged, the time it was written is known still."""
     time = datetime.fromtimestamp(path.stat().st_mtime).isoformat(timespec="seconds")
     try:
@@ -92,9 +92,9 @@ def whose_work(path: Path) -> AutosaveOwner:
         return AutosaveOwner(time=time)
 
 
-def take_over(left: Path, path: Path) -> None:
+def take_over(leftover: Path, path: Path) -> None:
     """Make the autosave of a program that ended one's own, its notes too."""
-    for before, after in ((left, path), (notes_of(left), notes_of(path))):
+    for before, after in ((leftover, path), (notes_of(leftover), notes_of(path))):
         with contextlib.suppress(FileNotFoundError):
             before.replace(after)
 

@@ -61,7 +61,7 @@ def autosave_file() -> Path:
     return Path(folder) / f"autosave-{os.getpid()}.trunnion"
 
 
-def left_behind() -> Path | None:
+def leftover_file() -> Path | None:
     """Return the newest autosave of a program that no longer runs, if there is one."""
     own = autosave_file()
     found = [p for p in own.parent.glob("autosave-*.trunnion") if p != own and not _runs(p)]

@@ -17,7 +17,7 @@ from trunnion.model.session import Session
 from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 from trunnion_gui.storage import preferences
-from trunnion_gui.storage.autosave import Autosave, AutosaveOwner, remove, take_over, whose_work
+from trunnion_gui.storage.autosave import Autosave, AutosaveOwner, autosave_owner, remove, take_over
 from trunnion_gui.widgets.notice import Notice
 
 LATEST_MS = 4000
@@ -40,7 +40,7 @@ class Recovery(QObject):
         self._soon.setSingleShot(True)
         self._soon.setInterval(LATEST_MS)
         self._soon.timeout.connect(self.keep)
-        self._failed.connect(self._tell)
+        self._failed.connect(self._report)
         document.changed.connect(self._changed)
         document.files.saved.connect(lambda _: self._changed())
         document.files.opened.connect(lambda _: self._changed())
@@ -56,20 +56,20 @@ class Recovery(QObject):
         document, self._edits, self._is_kept = self._document, 0, True
         part = document.shown.part
         time = datetime.now().isoformat(timespec="seconds")
-        whose = AutosaveOwner(
+        owner = AutosaveOwner(
             project=document.files.project, part=part.path if part else "", time=time
         )
-        self.file.keep(document.shown, *document.files.kept, whose)
+        self.file.keep(document.shown, *document.files.kept, owner)
 
     def offer(self) -> None:
         """Offer what an earlier program left behind, if there is something; the next one when a person throws it away."""
-        left = preferences.left_behind()
-        if left is not None:
-            whose = whose_work(left)
-            day, _, clock = whose.time.partition("T")
+        leftover = preferences.leftover_file()
+        if leftover is not None:
+            owner = autosave_owner(leftover)
+            day, _, clock = owner.time.partition("T")
             text = tr(
                 "{name} was not saved when the program ended; its work was kept on {day} at {time}"
-            ).format(name=whose.name or tr("A part"), day=day, time=clock)
+            ).format(name=owner.name or tr("A part"), day=day, time=clock)
             finding = Finding(
                 severity=Severity.INFO,
                 code="window",
@@ -79,8 +79,8 @@ class Recovery(QObject):
             self._notice.show_finding(
                 finding,
                 {
-                    tr("Recover"): partial(self._recover, left),
-                    tr("Discard"): partial(self._discard, left),
+                    tr("Recover"): partial(self._recover, leftover),
+                    tr("Discard"): partial(self._discard, leftover),
                 },
             )
 
@@ -105,22 +105,22 @@ class Recovery(QObject):
             self._is_kept = False
             self.file.forget()
 
-    def _recover(self, left: Path) -> None:
+    def _recover(self, leftover: Path) -> None:
         """Take up work that was left behind; its file becomes this program's own until the work is saved."""
 
         def taken(_path: str) -> None:
             self._document.files.opened.disconnect(taken)
-            take_over(left, preferences.autosave_file())
+            take_over(leftover, preferences.autosave_file())
             self._is_kept = True
 
         self._document.files.opened.connect(taken)
-        self._document.files.recover(left, whose_work(left).project)
+        self._document.files.recover(leftover, autosave_owner(leftover).project)
 
-    def _discard(self, left: Path) -> None:
-        remove(left)
+    def _discard(self, leftover: Path) -> None:
+        remove(leftover)
         self.offer()
 
-    def _tell(self, reason: str) -> None:
+    def _report(self, reason: str) -> None:
         self._document.notice(
             tr("Your work is not kept for recovery: {reason}").format(reason=reason),
             tr("save the project yourself (Ctrl+S), or make room"),

@@ -36,11 +36,11 @@ class UnsavedWork(QObject):
         """Return whether there is unsaved work that a person does not give up: then `go_on` is called once it is saved, or never."""
         if not (self.confirms and self._document.has_unsaved_work):
             return False
-        answer = self.confirm()
-        if answer == SAVE:
+        decision = self.confirm()
+        if decision == SAVE:
             self._waiting = go_on
             self._save_soon()
-        return answer != DISCARD
+        return decision != DISCARD
 
     def confirm(self) -> QMessageBox.StandardButton:
         """Ask what shall become of the work: `SAVE`, `DISCARD` or `CANCEL`. Tests answer in a person's place."""

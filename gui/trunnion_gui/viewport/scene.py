@@ -44,9 +44,9 @@ VIEWS: dict[str, tuple[tuple[float, float, float], tuple[float, float, float]]] 
 }
 """Where the eye stands and what is up, in the frame of the recognition."""
 
-_ROOM = 1.12
+_MARGIN = 1.12
 """How much more than the part a fitted picture shows."""
-_LEAST_ROOM = 120.0
+_LEAST_SPACE = 120.0
 """Pixels: a narrower or lower strip beside a legend is no place for a part."""
 _DIRECTIONS = 24
 _ASIDE = 0.45
@@ -69,7 +69,8 @@ def best_fit(
 
     def fitted(free: QRectF) -> tuple[float, tuple[float, float]]:
         scale = float(
-            max((high[0] - low[0]) / free.width(), (high[1] - low[1]) / free.height(), 1e-9) * _ROOM
+            max((high[0] - low[0]) / free.width(), (high[1] - low[1]) / free.height(), 1e-9)
+            * _MARGIN
         )
         away = free.center() - QPointF(width / 2, height / 2)
         middle = (low + high) / 2
@@ -83,15 +84,15 @@ def best_fit(
     )
     if covered.isEmpty() or not outline(x, y).intersects(QPolygonF(covered)):
         return best
-    beside, below = (
+    right, below = (
         whole.adjusted(covered.right(), 0, 0, 0),
         whole.adjusted(0, covered.bottom(), 0, 0),
     )
     return min(
         (
             fitted(free)
-            for free in (beside, below)
-            if free.width() > _LEAST_ROOM and free.height() > _LEAST_ROOM
+            for free in (right, below)
+            if free.width() > _LEAST_SPACE and free.height() > _LEAST_SPACE
         ),
         default=best,
     )
@@ -110,7 +111,7 @@ class Click:
     was held down."""
 
     face: int
-    place: tuple[float, float, float]
+    position: tuple[float, float, float]
     with_ctrl: bool = False
 
 
@@ -119,7 +120,7 @@ class ViewportScene(QWidget):
 
     clicked = Signal(object)
     """A `Click`."""
-    asked = Signal(object, QPoint)
+    menu_requested = Signal(object, QPoint)
     """A `Click` with the right button, and where on the screen: what can be done there?"""
     hovered = Signal(int)
     pointed = Signal(object, QPointF)
@@ -140,7 +141,7 @@ class ViewportScene(QWidget):
         self._picker: FacePicker | None = None
         self._frame = WORLD
         self._colours: Mapping[int, str] = {}
-        self._chosen: tuple[int, ...] = ()
+        self._selected: tuple[int, ...] = ()
         self._is_filled = True
         self._hover: tuple[int, ...] = ()
         self._is_faded = False
@@ -186,7 +187,7 @@ class ViewportScene(QWidget):
 
     def choose(self, faces: tuple[int, ...], *, filled: bool = True) -> None:
         """Mark faces as the selection: filled, or only by their border where toolpaths are to be seen on them."""
-        self._chosen, self._is_filled = faces, filled
+        self._selected, self._is_filled = faces, filled
         if self._part is not None:
             self._part.outline(
                 "chosen",
@@ -251,10 +252,10 @@ class ViewportScene(QWidget):
         """Show the path of the tip: points (k + 1, 3), and whether each chord (k,) was a rapid."""
         draw_trail(self.view, points, rapid)
 
-    def look_at(self, place: Sequence[float], face: int, half_height: float) -> None:
+    def look_at(self, position: Sequence[float], face: int, half_height: float) -> None:
         """Bring a place on a face into the middle of the picture, from above its face, showing so many mm above and below it."""
         camera = self.view.camera
-        normal = self._normal(face, np.asarray(place))
+        normal = self._normal(face, np.asarray(position))
         away = normal + self._frame.z if normal @ self._frame.z > -0.5 else normal
         away = away + _ASIDE * self._frame.world_direction(np.array([-0.6, -0.8, 0.0]))
         away = (
@@ -263,22 +264,24 @@ class ViewportScene(QWidget):
             * np.linalg.norm(np.subtract(camera.position, camera.focal_point))
         )
         camera.focal_point, camera.position, camera.up = (
-            tuple(place),
-            tuple(np.add(place, away)),
+            tuple(position),
+            tuple(np.add(position, away)),
             tuple(self._frame.z),
         )
         camera.parallel_scale = half_height
         self.view.renderer.ResetCameraClippingRange()
         self.view.render()
 
-    def _normal(self, face: int, place: np.ndarray) -> np.ndarray:
+    def _normal(self, face: int, position: np.ndarray) -> np.ndarray:
         """Return the direction that a face looks in at a place."""
         rows = (
             np.flatnonzero(self._mesh.face == face) if self._mesh is not None else np.zeros(0, int)
         )
         if self._mesh is None or not len(rows):
             return np.asarray(self._frame.z)
-        nearest = np.argmin(np.linalg.norm(self._mesh.corners()[rows].mean(axis=1) - place, axis=1))
+        nearest = np.argmin(
+            np.linalg.norm(self._mesh.corners()[rows].mean(axis=1) - position, axis=1)
+        )
         return self._mesh.normals()[rows[nearest]]
 
     def on_face(self, tag: int, points: np.ndarray) -> np.ndarray:
@@ -290,9 +293,9 @@ class ViewportScene(QWidget):
         draw_names(self.view, names, self._theme)
         self.view.render()
 
-    def show_cut(self, places: Sequence[tuple[float, float, float]], line: np.ndarray) -> None:
+    def show_cut(self, positions: Sequence[tuple[float, float, float]], line: np.ndarray) -> None:
         """Show places that were clicked, and the line (k, 2, 3) that a cut will follow; both may be empty."""
-        draw_cut(self.view, places, line, self._theme)
+        draw_cut(self.view, positions, line, self._theme)
         self.view.render()
 
     def show_label(self, text: str, at: tuple[float, ...] = ()) -> None:
@@ -319,7 +322,7 @@ class ViewportScene(QWidget):
         self._fitted = self._camera()
         self.view.render()
 
-    def keep_clear(self, covered: QRectF) -> None:
+    def set_covered(self, covered: QRectF) -> None:
         """Say which part of the picture something lies over; a picture that nobody has turned since it was fitted is fitted anew."""
         if covered != self._covered:
             self._covered = covered
@@ -380,12 +383,12 @@ class ViewportScene(QWidget):
 
     def _click(self, event: QMouseEvent) -> None:
         face = self.face_at(event.position())
-        place = self._picker.point if face and self._picker is not None else (0.0, 0.0, 0.0)
-        click = Click(face, place, bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
+        position = self._picker.point if face and self._picker is not None else (0.0, 0.0, 0.0)
+        click = Click(face, position, bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
         if event.button() == Qt.MouseButton.LeftButton:
             self.clicked.emit(click)
         else:
-            self.asked.emit(click, event.globalPosition().toPoint())
+            self.menu_requested.emit(click, event.globalPosition().toPoint())
 
     def _point(self, at: QPointF) -> None:
         if self._map is None or self._is_playing:
@@ -432,10 +435,10 @@ class ViewportScene(QWidget):
         for tag, colour in self._colours.items():
             if tag <= n_faces:
                 colours[tag] = rgb(mixed(colour, theme.part, _FADED) if self._is_faded else colour)
-        if self._is_isolated and self._chosen:
-            others = np.setdiff1d(np.arange(n_faces + 1), self._chosen)
+        if self._is_isolated and self._selected:
+            others = np.setdiff1d(np.arange(n_faces + 1), self._selected)
             colours[others] = rgb(mixed(theme.part, theme.view_bottom, 0.7))
-        for tag in self._chosen:
+        for tag in self._selected:
             if tag <= n_faces:
                 own = "#{:02x}{:02x}{:02x}".format(*colours[tag])
                 colours[tag] = rgb(mixed(own, theme.selection, 0.85 if self._is_filled else 0.0))

@@ -106,23 +106,23 @@ class PaintedView(QWidget):
         return QImage(image.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        self._tell(event)
+        self._report(event)
         if event.button() in self._PRESSES:
             getattr(self._interactor, self._PRESSES[event.button()])()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        self._tell(event)
+        self._report(event)
         if event.button() in self._PRESSES:
             getattr(self._interactor, self._PRESSES[event.button()].replace("Press", "Release"))()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        self._tell(event)
+        self._report(event)
         if event.buttons() != Qt.MouseButton.NoButton:
             self._interactor.MouseMoveEvent()
             self.render()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        self._tell(event)
+        self._report(event)
         (
             self._interactor.MouseWheelForwardEvent
             if event.angleDelta().y() > 0
@@ -138,7 +138,7 @@ class PaintedView(QWidget):
         ratio = self.devicePixelRatioF()
         return max(1, round(self.width() * ratio)), max(1, round(self.height() * ratio))
 
-    def _tell(self, event: QMouseEvent | QWheelEvent) -> None:
+    def _report(self, event: QMouseEvent | QWheelEvent) -> None:
         ratio, at, keys = self.devicePixelRatioF(), event.position(), event.modifiers()
         self._interactor.SetEventInformation(
             round(at.x() * ratio),

@@ -33,7 +33,7 @@ class Chart(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._theme: Theme | None = None
-        self.places: tuple[str, ...] = ()
+        self.positions: tuple[str, ...] = ()
         self.left: ChartCurve | None = None
         self.right: ChartCurve | None = None
         self.level: tuple[float, str] | None = None
@@ -49,15 +49,15 @@ class Chart(QWidget):
     def show_curves(
         self,
         across: str,
-        places: Sequence[str],
+        positions: Sequence[str],
         left: ChartCurve | None,
         right: ChartCurve | None,
         level: tuple[float, str] | None = None,
     ) -> None:
         """Show two curves over places that are named along the axis below; `level` is a value on the left with its words."""
-        self._across, self.places, self.left, self.right, self.level = (
+        self._across, self.positions, self.left, self.right, self.level = (
             across,
-            tuple(places),
+            tuple(positions),
             left,
             right,
             level,
@@ -91,7 +91,7 @@ class Chart(QWidget):
         painter.setPen(QPen(QColor(self._theme.line), 1))
         painter.drawRect(area)
         painter.setPen(QColor(self._theme.muted))
-        for row, words in enumerate(self.places):
+        for row, words in enumerate(self.positions):
             painter.drawText(
                 QRectF(self._x(row) - 30, area.bottom() + 3, 60, 14),
                 Qt.AlignmentFlag.AlignHCenter,
@@ -154,7 +154,7 @@ class Chart(QWidget):
 
     def _x(self, row: int) -> float:
         area = self._area()
-        return area.left() + area.width() * (row + 0.5) / max(len(self.places), 1)
+        return area.left() + area.width() * (row + 0.5) / max(len(self.positions), 1)
 
     def _y(self, curve: ChartCurve, value: float) -> float:
         low, high = self._range(curve)

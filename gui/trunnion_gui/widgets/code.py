@@ -66,11 +66,11 @@ class CodeView(QPlainTextEdit):
         if not block.isValid():
             self.setExtraSelections([])
             return
-        chosen = QTextEdit.ExtraSelection()
-        chosen.cursor = QTextCursor(block)
-        chosen.format.setBackground(self._mark_colour)
-        chosen.format.setProperty(QTextCharFormat.Property.FullWidthSelection, True)
-        self.setExtraSelections([chosen])
+        line_format = QTextEdit.ExtraSelection()
+        line_format.cursor = QTextCursor(block)
+        line_format.format.setBackground(self._mark_colour)
+        line_format.format.setProperty(QTextCharFormat.Property.FullWidthSelection, True)
+        self.setExtraSelections([line_format])
         top = self.firstVisibleBlock().blockNumber()
         shown = self.viewport().height() // max(self.fontMetrics().lineSpacing(), 1)
         if not top + 1 <= line - 1 <= top + shown - 3:

@@ -30,14 +30,14 @@ class Notice(QFrame):
         words.setSpacing(2)
         words.addWidget(self._text)
         words.addWidget(self._remedy)
-        self._answers = QHBoxLayout()
+        self._actions = QHBoxLayout()
         self.close_button = QToolButton()
         self.close_button.setToolTip(tr("Close this message"))
         self.close_button.clicked.connect(self.hide)
         row = QHBoxLayout(self)
         row.setContentsMargins(14, 9, 8, 9)
         row.addLayout(words, 1)
-        row.addLayout(self._answers)
+        row.addLayout(self._actions)
         row.addWidget(self.close_button)
         self.hide()
 
@@ -52,7 +52,7 @@ class Notice(QFrame):
         return self._remedy.text()
 
     def show_finding(
-        self, finding: Finding, answers: dict[str, Callable[[], None]] | None = None
+        self, finding: Finding, actions: dict[str, Callable[[], None]] | None = None
     ) -> None:
         """Show a finding with buttons for what can be done."""
         self.setProperty("severity", _SIDES.get(finding.severity, "info"))
@@ -62,10 +62,10 @@ class Notice(QFrame):
         self._text.setText(message_sentence(finding.text))
         self._remedy.setText(message_sentence(finding.remedy))
         self._remedy.setVisible(bool(finding.remedy))
-        empty(self._answers)
-        for words, answer in (answers or {}).items():
+        empty(self._actions)
+        for words, action in (actions or {}).items():
             button = QPushButton(words)
             button.clicked.connect(self.hide)
-            button.clicked.connect(lambda _=False, act=answer: act())
-            self._answers.addWidget(button)
+            button.clicked.connect(lambda _=False, act=action: act())
+            self._actions.addWidget(button)
         self.show()

@@ -41,17 +41,19 @@ class StatusBar(QStatusBar):
         self.addWidget(self.text, 1)
         self.addPermanentWidget(self.verdict)
         self.setContentsMargins(10, 0, 12, 0)
-        self._doing, self._has_said = "", False
+        self._doing, self._has_reported = "", False
         self._clock = QTimer(self)
         self._clock.setInterval(_TICK_MS)
         self._clock.timeout.connect(self._tick)
         document.jobs.changed.connect(self._job)
         document.jobs.progressed.connect(self._progress)
         document.changed.connect(self.refresh)
-        document.files.saved.connect(lambda path: self._say(tr("Saved {path}").format(path=path)))
-        document.said.connect(self._say)
+        document.files.saved.connect(
+            lambda path: self._report(tr("Saved {path}").format(path=path))
+        )
+        document.reported.connect(self._report)
         document.files.written.connect(
-            lambda what: self._say(
+            lambda what: self._report(
                 tr("{n} files written to {folder}").format(n=len(what[1]), folder=what[0])
             )
         )
@@ -86,9 +88,9 @@ class StatusBar(QStatusBar):
         if self._document.jobs.job is None:
             self.text.setText(words)
 
-    def _say(self, words: str) -> None:
+    def _report(self, words: str) -> None:
         """Say what came of a job; it stays when the job is put away."""
-        self._has_said = True
+        self._has_reported = True
         self.text.setText(words)
 
     def _job(self) -> None:
@@ -97,12 +99,12 @@ class StatusBar(QStatusBar):
         self.cancel.setVisible(job is not None)
         if job is not None:
             self.bar.setValue(0)
-            self._doing, self._has_said = job.label, False
+            self._doing, self._has_reported = job.label, False
             self._clock.start()
             self._tick()
         else:
             self._clock.stop()
-            if self._doing and not self._has_said:
+            if self._doing and not self._has_reported:
                 self.text.setText("")
             self._doing = ""
         self.cancel.setIcon(icons.icon("cancel"))

@@ -96,10 +96,12 @@ def box_of(mesh: Mesh, tag: int) -> tuple[np.ndarray, np.ndarray]:
     return points.min(axis=0), points.max(axis=0)
 
 
-def plane_line(mesh: Mesh, tag: int, place: Sequence[float], normal: Sequence[float]) -> np.ndarray:
+def plane_line(
+    mesh: Mesh, tag: int, position: Sequence[float], normal: Sequence[float]
+) -> np.ndarray:
     """Return the pieces (k, 2, 3) of the line in which a plane meets a face."""
     corners = mesh.corners()[mesh.face == tag]
-    height = (corners - np.asarray(place)) @ np.asarray(normal)
+    height = (corners - np.asarray(position)) @ np.asarray(normal)
     above = height > 0.0
     met = np.flatnonzero(above.any(axis=1) & ~above.all(axis=1))
     corners, height, above = corners[met], height[met], above[met]
@@ -116,8 +118,8 @@ def plane_line(mesh: Mesh, tag: int, place: Sequence[float], normal: Sequence[fl
     return np.stack(ends, axis=1)
 
 
-def sampled(places: Sequence[Sequence[float]], pieces: int) -> np.ndarray:
+def sampled(positions: Sequence[Sequence[float]], pieces: int) -> np.ndarray:
     """Return points (k, 3) along straight lines through places, so many between two of them; the ends are there too."""
-    given = np.asarray(places, dtype=float).reshape(-1, 3)
+    given = np.asarray(positions, dtype=float).reshape(-1, 3)
     at = np.linspace(0.0, len(given) - 1.0, (len(given) - 1) * pieces + 1)
     return np.column_stack([np.interp(at, np.arange(len(given)), given[:, k]) for k in range(3)])

@@ -1,7 +1,7 @@
 """Requests that the worker knows: each verb calls the engine and replies with plain data that the window draws or shows. No Qt.
 
-Verbs take the engine, a progress, a function that sends what is done so far, and their own arguments; `VERBS` lists those of every part. A
-family's own ones are requested by the function itself, which the worker imports.
+Verbs take the engine, a progress, a function that sends what is done so far, and their own arguments; `COMMANDS` lists those of every part.
+A family's own ones are requested by the function itself, which the worker imports.
 """
 
 from __future__ import annotations
@@ -59,14 +59,14 @@ def writes_files(work: Work) -> Work:
     return work
 
 
-def work_of(verb: str | Work) -> Work:
+def work_of(command: str | Work) -> Work:
     """Return the function behind a verb's name, or a family's own function itself."""
-    return VERBS[verb] if isinstance(verb, str) else verb
+    return COMMANDS[command] if isinstance(command, str) else command
 
 
-def is_writing(verb: str | Work) -> bool:
+def is_writing(command: str | Work) -> bool:
     """Return whether a verb writes files."""
-    return work_of(verb) in _writing
+    return work_of(command) in _writing
 
 
 def state_of(engine: Any, session: Session, refusal: str = "") -> SessionState:
@@ -212,7 +212,7 @@ def _offered(setting: Declared) -> Declared:
     return replace(setting, choices=tuple(dict.fromkeys((str(setting.default), *known))))
 
 
-VERBS: dict[str, Callable[..., Any]] = {
+COMMANDS: dict[str, Callable[..., Any]] = {
     "open": _open,
     "run": _run,
     "states": _states,

@@ -29,25 +29,25 @@ def packed(thing: Any) -> SharedMessage:
     if sum(sizes) < SMALL:
         return SharedMessage(pickle.dumps(thing, protocol=5))
     memory = SharedMemory(create=True, size=sum(sizes))
-    room, at = memoryview(memory.buf or b""), 0
+    buffer, at = memoryview(memory.buf or b""), 0
     for view in views:
-        room[at : at + view.nbytes] = view
+        buffer[at : at + view.nbytes] = view
         at += view.nbytes
-    room.release()
+    buffer.release()
     memory.close()
     return SharedMessage(data, memory.name, sizes)
 
 
-def unpacked(parcel: SharedMessage) -> Any:
+def unpacked(message: SharedMessage) -> Any:
     """Return the thing of a parcel and free its block; arrays come back read-only."""
-    if not parcel.block:
-        return pickle.loads(parcel.data)
-    memory = SharedMemory(name=parcel.block)
-    room, buffers, at = memoryview(memory.buf or b""), [], 0
-    for size in parcel.sizes:
-        buffers.append(bytes(room[at : at + size]))
+    if not message.block:
+        return pickle.loads(message.data)
+    memory = SharedMemory(name=message.block)
+    buffer, buffers, at = memoryview(memory.buf or b""), [], 0
+    for size in message.sizes:
+        buffers.append(bytes(buffer[at : at + size]))
         at += size
-    room.release()
+    buffer.release()
     memory.close()
     memory.unlink()
-    return pickle.loads(parcel.data, buffers=buffers)
+    return pickle.loads(message.data, buffers=buffers)

@@ -40,10 +40,10 @@ _CRASHES_IN_A_ROW = 3
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """Something to do: `verb` is a name in `VERBS`, or a function like these."""
+    """Something to do: `command` is a name in `VERBS`, or a function like these."""
 
     number: int
-    verb: str | Work
+    command: str | Work
     arguments: tuple[Any, ...] = ()
 
 
@@ -99,7 +99,7 @@ def _fault_line(request: Request, fault: Exception) -> str:
 
     last = traceback.extract_tb(fault.__traceback__)[-1]
     where = f"{os.path.basename(last.filename)}:{last.lineno}"
-    what = request.verb if isinstance(request.verb, str) else request.verb.__name__
+    what = request.command if isinstance(request.command, str) else request.command.__name__
     return f"{what} met a fault of the program ({type(fault).__name__} at {where}: {fault})"
 
 
@@ -124,7 +124,7 @@ def _reply_to(engine: Any, request: Request, pipe: Connection, cancelled: Any) -
     return Reply(
         request.number,
         "done",
-        value=work_of(request.verb)(engine, progress, send_event, *request.arguments),
+        value=work_of(request.command)(engine, progress, send_event, *request.arguments),
     )
 
 
@@ -161,25 +161,25 @@ class Worker(QObject):
         """The id of the process, 0 when none runs."""
         return self._process.pid if self._process is not None else 0
 
-    def send(self, verb: str | Work, *arguments: Any) -> int:
+    def send(self, command: str | Work, *arguments: Any) -> int:
         """Send a request and return its number; starts the process again when it had given up."""
         if self._process is None:
             self._crashes = 0
             self._start()
             self.restarted.emit()
         self._number += 1
-        request = Request(self._number, verb, arguments)
+        request = Request(self._number, command, arguments)
         self._awaited.append(request)
         self._outgoing.put(request)
         return self._number
 
     def cancel(self, number: int) -> None:
         """Request that a job stops; end its process when it does not obey in time."""
-        asked = next((r for r in self._awaited if r.number == number), None)
-        if self._process is None or asked is None:
+        request = next((r for r in self._awaited if r.number == number), None)
+        if self._process is None or request is None:
             return
         self._cancelled.value = max(self._cancelled.value, number)
-        grace = WRITING_GRACE_S if is_writing(asked.verb) else GRACE_S
+        grace = WRITING_GRACE_S if is_writing(request.command) else GRACE_S
         QTimer.singleShot(int(grace * 1000), lambda: self._insist(number))
 
     def forget(self, number: int) -> None:

@@ -95,7 +95,7 @@ class TurnedDiscPlanner:
     def route(self, job):
         """Return the process: every stage on every feature of its kinds, and a finding for each feature that nothing is planned for."""
         plan = typical_plan(job.shop, self.name, "", self.cutter_rules)
-        chosen, setup = job.chosen(TurnedDiscRouteSettings), job.setups[0]
+        chosen, setup = job.settings_of(TurnedDiscRouteSettings), job.setups[0]
         findings = too_large(job.blank, job.setups, job.shop)
         operations: list[Operation] = []
         for stage in job.progress.each(plan.stages):
@@ -184,7 +184,7 @@ def _plane(operation, needs, scene, progress):
         "sections", lambda: SetupSpace.of(part, scene.recognition, scene.blank, scene.setup)
     )
     drive = drive_of(operation, scene.process, space)
-    return OperationDrive(setup=scene.setup, drive=drive, told=drive)
+    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)
 
 
 def _bevel(operation, needs, scene, progress):
@@ -197,4 +197,4 @@ def _bevel(operation, needs, scene, progress):
         top=float(foot[2]) + sizes["height"],
         angle=sizes["angle"],
     )
-    return OperationDrive(setup=scene.setup, drive=drive, told=drive)
+    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)

@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.findings import error
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import FaceRole, Feature, Recognition
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.contract import Suitability
 from trunnion.recognize.revolution import main_axis, of_revolution
 from trunnion.settings import setting, settings
@@ -117,7 +117,7 @@ class TurnedDiscFamily:
             reason=f"{percent(share)} of the area a disc with its slots",
         )
 
-    def recognize(self, graph, slicer, settings, progress=QUIET):
+    def recognize(self, graph, slicer, settings, progress=NO_PROGRESS):
         """Return ends, rims, bevels and slots; every other face is unexplained, with a finding."""
         progress.at(0.0, "looking for the disc")
         disc = progress.aside(lambda _: disc_of(graph))

@@ -185,7 +185,7 @@ def test_heights_agree_with_opencamlib() -> None:
 def test_a_touch_lies_on_its_triangle_and_on_the_cutter(name: str) -> None:
     points, triangles = wavy(14)
     at = np.random.default_rng(7).uniform(2.0, 58.0, (80, 2))
-    z, facet, contact = DropSurface.of(points, triangles).touch(at, CUTTERS[name], LOWEST)
+    z, facet, contact = DropSurface.of(points, triangles).contacts(at, CUTTERS[name], LOWEST)
     away = np.hypot(*(contact[:, :2] - at).T)
     assert away.max() <= CUTTERS[name][-1, 1] + 1e-9
     assert contact[:, 2] - height_at(
@@ -201,7 +201,7 @@ def test_a_touch_lies_on_its_triangle_and_on_the_cutter(name: str) -> None:
 
 def test_over_nothing_no_triangle_is_touched() -> None:
     surface = DropSurface.of(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.0]]), np.array([[0, 1, 2]]))
-    z, facet, contact = surface.touch(np.array([[30.0, 30.0], [0.2, 0.2]]), BALL, LOWEST)
+    z, facet, contact = surface.contacts(np.array([[30.0, 30.0], [0.2, 0.2]]), BALL, LOWEST)
     assert (z.tolist(), facet.tolist()) == ([LOWEST, 0.0], [-1, 0]) and np.isnan(contact[0]).all()
 
 
@@ -227,7 +227,7 @@ def test_each_point_may_have_its_own_height_to_begin_with() -> None:
     )
     z = surface.drop(at, BALL, LOWEST)
     floor = z + np.where(np.arange(60) % 2 == 0, 1.0, -0.1)
-    found, facet, _ = surface.touch(at, BALL, floor)
+    found, facet, _ = surface.contacts(at, BALL, floor)
     assert np.array_equal(found, np.maximum(z, floor)) and np.array_equal(
         facet >= 0, np.arange(60) % 2 == 1
     )

@@ -15,8 +15,8 @@ from trunnion.part.shape.exact import ExactPoints
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.partition import PART
-from trunnion.plan.freeform.finishing.rest import BESIDE, left_by, without_met
-from trunnion.progress import QUIET
+from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, remaining_of, without_met
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 from trunnion.toolpath.contact_passes.overrun import OverrunStrip
@@ -98,7 +98,7 @@ HOLLOW = Bend(-2.0, 0.0, 2.0, math.pi - 1.1, math.pi, 6.0, 2)
 
 def cut(strategy, settings, skin, faces, **chosen):
     drive, setup, stock = driven(skin, faces=faces, height=HEIGHT)
-    return strategy(drive, BALL, DATA, stock, setup, choose(settings, chosen), QUIET).path
+    return strategy(drive, BALL, DATA, stock, setup, choose(settings, chosen), NO_PROGRESS).path
 
 
 def measured(paths, faces, low, high):
@@ -143,7 +143,7 @@ def test_what_a_cutter_leaves_before_a_hollow_too_tight_for_it_is_another_ones_a
     skin = joined(LEVEL.skin(12), HOLLOW.skin(40))
     tips = np.array([[3.0, y] for y in np.linspace(-2.0, 0.0, 2001)])
     free = tips[skin.drop.drop(tips, lower_side(BALL), -9.0) <= 1e-4, 1].max()
-    found, tags = left_by(skin, (1,), BALL, -9.0, HEIGHT)
+    found, tags = remaining_of(skin, (1,), BALL, -9.0, HEIGHT)
     assert tags == (1 + PART,)
     kept = found.points[found.triangles[found.face == 1]]
     # Where it stands last it is finished, and what is left goes on below it for a stepover.
@@ -163,7 +163,7 @@ def test_what_a_cutter_leaves_has_a_rim_that_passes_can_follow() -> None:
         2,
     )
     skin = joined(floor, wall)
-    found, tags = left_by(skin, (1,), BALL, -9.0, HEIGHT)
+    found, tags = remaining_of(skin, (1,), BALL, -9.0, HEIGHT)
     sheet = sheet_of(found, tags)
     along = (foot[1] - foot[0]) / np.linalg.norm(foot[1] - foot[0])
     for rim in sheet.rims():
@@ -220,7 +220,7 @@ def test_where_a_shank_would_meet_the_part_is_none_of_a_cutters_area() -> None:
     kept = found.points[found.triangles[found.of(tags)]]
     around = 2.0 * max(0.3, stepover_on_plane(wide.corner_radius, HEIGHT))
     assert tags == (1,) and reach > wide.radius
-    assert kept[:, :, 1].min() == pytest.approx(reach + BESIDE + around, abs=0.5)
+    assert kept[:, :, 1].min() == pytest.approx(reach + HOLDER_CLEARANCE + around, abs=0.5)
     # All that is kept hangs together as one piece with one rim.
     assert len(sheet_of(found, tags).components()) == 1 and len(sheet_of(found, tags).rims()) == 1
     # Away from walls nothing changes.

@@ -6,7 +6,7 @@ import pytest
 
 from trunnion import findings, registry
 from trunnion.findings import BadCall, Cancelled, face_tags, has_errors
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import trimmed
 
 
@@ -36,7 +36,7 @@ def test_a_line_names_eight_places_and_json_all_of_them() -> None:
 
 
 def test_eight_places_are_all_named() -> None:
-    assert findings.info("a.b", "so", *face_tags(range(1, 9))).place.endswith("face 7, face 8")
+    assert findings.info("a.b", "so", *face_tags(range(1, 9))).location.endswith("face 7, face 8")
 
 
 def test_a_part_of_progress_reports_its_own_share() -> None:
@@ -51,7 +51,7 @@ def test_a_cancelled_job_stops_at_the_next_look() -> None:
 
 
 def test_quiet_progress_counts_over_things() -> None:
-    assert list(QUIET.over([1, 2, 3])) == [1, 2, 3]
+    assert list(NO_PROGRESS.over([1, 2, 3])) == [1, 2, 3]
 
 
 def test_an_unknown_name_is_refused_with_the_known_ones() -> None:

@@ -12,7 +12,7 @@ from numba import njit
 from trunnion import progress as module
 from trunnion.findings import Cancelled
 from trunnion.geometry.kernels.compiling import TEXT, compiling
-from trunnion.progress import BEAT_S, QUIET, Progress
+from trunnion.progress import BEAT_S, NO_PROGRESS, Progress
 from trunnion.verify.threads import in_parallel
 
 
@@ -89,7 +89,7 @@ def test_work_in_a_thread_of_its_own_is_looked_at_and_answers() -> None:
         == "trunnion-aside"
     )
     assert watch.looks >= 3
-    assert QUIET.aside(lambda own: threading.current_thread() is threading.main_thread())
+    assert NO_PROGRESS.aside(lambda own: threading.current_thread() is threading.main_thread())
 
 
 def test_work_in_a_thread_of_its_own_raises_its_own_errors() -> None:

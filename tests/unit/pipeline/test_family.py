@@ -20,7 +20,7 @@ from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
 from trunnion.pipeline.planning import family
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.contract import Suitability
 from trunnion.settings import settings
 from trunnion.store.features import features_xml
@@ -70,7 +70,7 @@ def recognised(
     monkeypatch.setattr(family, "checked", lambda chosen: chosen)
     monkeypatch.setattr(family, "choose", lambda group, words: SimpleNamespace(family=wanted))
     bench = SimpleNamespace(part=SimpleNamespace(graph=lambda: None, tags=(1, 2, 3)))
-    return family.recognised(Session(), bench, QUIET)
+    return family.recognised(Session(), bench, NO_PROGRESS)
 
 
 def severities(found: Recognition) -> dict[str, Severity]:

@@ -10,7 +10,7 @@ from programs import process_tree, recognition
 from trunnion import registry
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.pipeline.engine import Engine
-from trunnion.pipeline.planning.manual_edits import with_features_by_hand, with_operations_by_hand
+from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
 from trunnion_resources import sample
 
 FOUND = replace(
@@ -37,12 +37,12 @@ def ids(found: Recognition) -> list[str]:
 
 
 def test_what_nobody_touched_is_what_was_found():
-    assert with_features_by_hand(FOUND, FOUND) is FOUND
-    assert with_features_by_hand(None, FOUND) is FOUND
+    assert with_manual_features(FOUND, FOUND) is FOUND
+    assert with_manual_features(None, FOUND) is FOUND
 
 
 def test_a_deleted_feature_is_not_taken_up_again_and_its_faces_stay_unexplained():
-    after = with_features_by_hand(FOUND.without("rib-01"), FOUND)
+    after = with_manual_features(FOUND.without("rib-01"), FOUND)
     assert ids(after) == ["pocket-01", "pocket-02", "island-01"]
     assert after.unexplained == (12, 40, 41)
     assert after.removed == ((12,),)
@@ -73,7 +73,7 @@ def test_a_deleted_feature_is_known_by_its_faces_when_numbers_change():
     renumbered = replace(
         FOUND, features=tuple(replace(f, id=f.id.replace("01", "09")) for f in FOUND)
     )
-    assert ids(with_features_by_hand(FOUND.without("pocket-01"), renumbered)) == [
+    assert ids(with_manual_features(FOUND.without("pocket-01"), renumbered)) == [
         "pocket-02",
         "island-09",
         "rib-09",
@@ -87,7 +87,7 @@ def test_a_feature_that_shares_few_faces_with_a_deleted_one_is_taken_up():
         faces=tuple(FaceRole(role="wall", face=n) for n in (3, 4, 30, 31)),
     )
     assert "pocket-03" in ids(
-        with_features_by_hand(FOUND.without("pocket-01"), replace(FOUND, features=(other,)))
+        with_manual_features(FOUND.without("pocket-01"), replace(FOUND, features=(other,)))
     )
 
 
@@ -99,13 +99,13 @@ def test_a_feature_made_by_hand_where_one_was_deleted_stays():
         by_hand=True,
         faces=(FaceRole(role="wall", face=4), FaceRole(role="top", face=3)),
     )
-    after = with_features_by_hand(replace(before, features=(*before.features, mine)), FOUND)
+    after = with_manual_features(replace(before, features=(*before.features, mine)), FOUND)
     assert ids(after) == ["pocket-02", "island-01", "rib-01", "mine"]
     assert after.unexplained == (5, 6, 40, 41)
 
 
 def test_a_deleted_operation_is_not_made_again_and_holds_nothing_up():
-    after = with_operations_by_hand(MADE.without("pocket-01.rough"), MADE)
+    after = with_manual_operations(MADE.without("pocket-01.rough"), MADE)
     assert [o.id for o in after.operations] == ["wall-01", "wall-02", "face-02"]
     assert all(o.after == () for o in after.operations)
     assert after.removed == ("pocket-01.rough",)
@@ -113,7 +113,7 @@ def test_a_deleted_operation_is_not_made_again_and_holds_nothing_up():
 
 def test_an_operation_changed_by_hand_stays_beside_a_deleted_one():
     slower = replace(MADE.operation("face-02"), suppressed=True, by_hand=True)
-    after = with_operations_by_hand(MADE.with_operation(slower).without("wall-01"), MADE)
+    after = with_manual_operations(MADE.with_operation(slower).without("wall-01"), MADE)
     assert after.operation("face-02") == slower
     assert "wall-01" not in [o.id for o in after.operations]
 
@@ -160,7 +160,7 @@ def test_kinds_that_share_out_faces_are_what_the_family_says(monkeypatch):
         family="wedges", features=(wedge("wedge-01", 1, 2, 3, 4), wedge("wedge-02", 5, 6))
     )
     before = replace(found, features=(wedge("wedge-01", 4, 5, 6, by_hand=True),))
-    after = with_features_by_hand(before, found)
+    after = with_manual_features(before, found)
     assert {f.id: f.tags for f in after} == {"wedge-01": (4, 5, 6), "wedge-02": (1, 2, 3)}
     other = replace(before, family="panel"), replace(found, family="panel")
-    assert {f.id: f.tags for f in with_features_by_hand(*other)} == {"wedge-01": (4, 5, 6)}
+    assert {f.id: f.tags for f in with_manual_features(*other)} == {"wedge-01": (4, 5, 6)}

@@ -11,7 +11,7 @@ from trunnion.findings import BadInput, Severity
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import make_paths
 from trunnion.plan.contract import DriveNeeds, driven_by, planner_for
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 
 
 class WedgePlanner:
@@ -75,7 +75,7 @@ def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_an
     engine, session = routed
     first = replace(session.process, operations=session.process.operations[:1])
     found = make_paths(
-        as_family(replace(session, process=first, paths=()), "wedge"), engine.context, QUIET
+        as_family(replace(session, process=first, paths=()), "wedge"), engine.context, NO_PROGRESS
     )[0].findings
     assert [(f.severity, f.code) for f in found] == [(Severity.ERROR, "toolpath.refused")]
     assert "plane.face is driven by a PlaneDrive, which is not made for wedges" in found[0].text
@@ -87,7 +87,7 @@ def test_our_planners_drive_every_strategy_that_is_there(routed, family) -> None
     made = {registry.get("strategies", name).drive for name in registry.names("strategies")}
     for drive in made:
         with pytest.raises(AttributeError):  # it goes for the scene: a drive of this class is made
-            planner_for(family).drive(operation, DriveNeeds(drive=drive), None, QUIET)
+            planner_for(family).drive(operation, DriveNeeds(drive=drive), None, NO_PROGRESS)
 
 
 def test_unsewn_faces_are_refused_as_parts_of_curved_surfaces_only() -> None:

@@ -16,7 +16,7 @@ from trunnion.pipeline.proof.external_nc import verify_texts
 from trunnion.pipeline.proof.playback import Playback
 from trunnion.pipeline.proof.posted_programs import post_texts, prove_session, read_back
 from trunnion.post.header import Header
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 
 FIRST, SECOND = "Mill 1200", "Kestrel 300"
 CHANGE_S = 40.0
@@ -47,7 +47,7 @@ def proven(planned, **changes):
     engine, session = planned
     context = Context(engine.context.part, shop_of(engine, **changes))
     with with_own_packages():
-        return prove_session(session, context, QUIET)
+        return prove_session(session, context, NO_PROGRESS)
 
 
 @pytest.fixture(scope="module")
@@ -154,6 +154,6 @@ def test_texts_from_outside_are_read_in_their_setups_control(planned, alike, tmp
     context = Context(engine.context.part, shop_of(engine))
     monkeypatch.setattr(engine, "context_of", lambda *_: context)
     with with_own_packages():
-        after = verify_texts(engine, session, files, QUIET)
+        after = verify_texts(engine, session, files, NO_PROGRESS)
     assert [p.dialect for p in after.posted] == ["linuxcnc", "kestrel"]
     assert after.verdict.outcome is not Outcome.FAILED

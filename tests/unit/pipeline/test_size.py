@@ -11,7 +11,7 @@ from trunnion import registry
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import SizeEntry
 from trunnion.plan.size import size_table
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.contract import Smallest
 from trunnion.recognize.panel import PanelFamily
 from trunnion.settings import choose
@@ -27,7 +27,7 @@ PART = terrace(
 def table() -> tuple[SizeEntry, ...]:
     graph = PART.graph()
     return size_table(
-        PanelFamily().recognize(graph, PART, choose(PanelFamily.settings, {}), QUIET), graph
+        PanelFamily().recognize(graph, PART, choose(PanelFamily.settings, {}), NO_PROGRESS), graph
     )
 
 

@@ -19,7 +19,7 @@ from trunnion.findings import BadCall, BadInput, Cancelled
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import STEPS, Engine
 from trunnion.pipeline.proof.external_nc import verify_texts
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion_resources import sample
 
 
@@ -215,7 +215,7 @@ def test_a_program_edited_by_hand_is_judged_by_what_it_says(line, tmp_path):
     text = (folder / "B1.S1.nc").read_text()
     assert "Z-38 " in text
     (tmp_path / "edited.nc").write_text(text.replace("Z-38 ", "Z-38.05 "))
-    judged = verify_texts(engine, session, [tmp_path / "edited.nc"], QUIET)
+    judged = verify_texts(engine, session, [tmp_path / "edited.nc"], NO_PROGRESS)
     assert judged.verdict.outcome is Outcome.FAILED
     assert judged.verdict.gouge == pytest.approx(0.05, abs=0.002)
 

@@ -12,7 +12,7 @@ from trunnion.part.read.part_file import read_part
 from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline.planning.clearance import PartClearance
 from trunnion.shop import load_shop
-from trunnion.toolpath.contact_passes.axis_search import roomy
+from trunnion.toolpath.contact_passes.axis_search import thickened
 
 BALL = cutter("ball", diameter=6.0, corner=3.0, flute=12.0)
 UP, SIDE, DOWN = (
@@ -73,7 +73,7 @@ def test_poses_are_given_in_the_cutting_frame(block) -> None:
 
 
 def test_neck_shank_and_holder_are_asked_for_thicker_than_they_are() -> None:
-    thick = roomy(BALL, 0.25)
+    thick = thickened(BALL, 0.25)
     assert (thick.diameter, thick.corner_radius) == (BALL.diameter, BALL.corner_radius)
     assert thick.shank_diameter == approx(BALL.shank_diameter + 0.5)
     assert [row[1] for row in thick.holder.rows] == approx(

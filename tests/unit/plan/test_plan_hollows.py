@@ -18,7 +18,7 @@ from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline import Engine
 from trunnion.plan.freeform.roughing.heights import HeightMap
 from trunnion.plan.freeform.roughing.hollows import hollow_depths
-from trunnion.plan.freeform.roughing.layers import left_on_walls
+from trunnion.plan.freeform.roughing.layers import remaining_on_walls
 from trunnion.plan.freeform.space import SurfaceSpace
 
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=20.0, machine="Mill 1200")
@@ -53,7 +53,7 @@ def test_layers_leave_on_walls_about_what_is_foreseen_and_never_twice_as_much(z)
     width, depth = 20.1, 16.3
     space = space_of(plate(width, depth, 8.0), width, depth, 8.0)
     least, most = off_the_wall(space, width, depth, z)
-    foreseen = left_on_walls(space, ALLOWANCE, CELL)
+    foreseen = remaining_on_walls(space, ALLOWANCE, CELL)
     # The cell's diagonal 0.354 and the rim's straightening 0.15 come to the allowance.
     assert foreseen == approx(0.3 + 0.3536 + 0.15, abs=1e-4)
     assert ALLOWANCE < least <= most < 2.0 * foreseen

@@ -20,14 +20,14 @@ from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline import Engine
 from trunnion.plan.freeform.cutters.end_mills import end_mills_for
 from trunnion.plan.freeform.lands import SKIM, LandClearances, PartAbove, covered, lands_of, without
-from trunnion.plan.freeform.reach import places_on
+from trunnion.plan.freeform.reach import samples_on
 from trunnion.plan.freeform.roughing.layers import plane_drive_of
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=40.0, machine="Mill 1200")
-BARE, KEEPING = (LandClearances(beside=beside, around=0.5, above=1.0) for beside in (0.0, 0.4))
+BARE, KEEPING = (LandClearances(lateral=beside, around=0.5, above=1.0) for beside in (0.0, 0.4))
 MILLS = [mill(d) for d in (4.0, 6.0, 8.0, 12.0, 16.0)]
 CURVED = {"recognize.family": "surface", "surface.scallop": 0.02, "surface.semi_allowance": 0.0}
 
@@ -76,7 +76,9 @@ def lands(space):
 
 
 def chosen(space, mills=MILLS, ball=1.0, kept=()):
-    return end_mills_for(PartAbove(space), lands(space), mills, ball, 0.97, KEEPING, kept, QUIET)
+    return end_mills_for(
+        PartAbove(space), lands(space), mills, ball, 0.97, KEEPING, kept, NO_PROGRESS
+    )
 
 
 def at(found, z):
@@ -169,7 +171,7 @@ def test_the_largest_that_covers_nearly_all_is_taken_and_comes_back_to_the_foot_
     found = at(chosen(spaced(walled())), 6.0)
     assert found.tool.diameter == 16.0
     assert found.rest.diameter == 16.0
-    assert found.left.area < 0.1
+    assert found.remaining.area < 0.1
 
 
 def test_a_narrow_passage_asks_for_a_smaller_one() -> None:
@@ -210,7 +212,7 @@ def test_the_foot_of_the_wall_is_finished_with_the_land_and_no_more_of_it() -> N
     space = spaced(walled())
     found = at(chosen(space), 6.0)
     wall = next(t for t in space.part.tags if abs(space.part.graph().centre[t - 1][0] - 5.0) < 1e-6)
-    places = places_on(space.skin, (wall,))
+    places = samples_on(space.skin, (wall,))
     done = found.finishes(places)
     assert places.point[done, 2].max() <= 6.0 + 8.0
     assert (done == (places.point[:, 2] <= 14.0)).all()
@@ -274,7 +276,7 @@ def test_thick_stock_comes_off_a_land_in_steps() -> None:
     space = SurfaceSpace.of(
         read(grooved().val().wrapped), spaced(grooved()).skin, session.blank, session.setups[0]
     )
-    floors = plane_drive_of(land, space, stock, QUIET).floors
+    floors = plane_drive_of(land, space, stock, NO_PROGRESS).floors
     assert [
         round(f.z - min(g.z for g in floors if g.face == f.face), 6)
         for f in floors

@@ -13,7 +13,7 @@ from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature
 from trunnion.plan.panel.route import RouteSettings, make_route
 from trunnion.plan.setups import SetupSettings, make_setups
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 
@@ -25,7 +25,7 @@ def route(made, *, blank=None, **words):
     blank = blank or blank_of(part)
     setups = make_setups(recognition, blank, choose(SetupSettings, {}))
     return make_route(
-        recognition, (), blank, setups, SHOP, part, choose(RouteSettings, words), QUIET
+        recognition, (), blank, setups, SHOP, part, choose(RouteSettings, words), NO_PROGRESS
     )
 
 

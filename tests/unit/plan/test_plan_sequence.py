@@ -11,7 +11,7 @@ from trunnion.plan.sequence import OrderedOperation, ordered
 
 def job(id: str, tool: str, stage: int = 0, after: str = "", x: float = 0.0) -> OrderedOperation:
     return OrderedOperation(
-        id=id, tool=tool, stage=stage, place=(x, 0.0), after=frozenset(after.split())
+        id=id, tool=tool, stage=stage, position=(x, 0.0), after=frozenset(after.split())
     )
 
 

@@ -31,7 +31,7 @@ from trunnion.plan.freeform.finishing.areas import (
     walls_of,
 )
 from trunnion.plan.freeform.frames import cutting_setup
-from trunnion.plan.freeform.reach import places_on, reached
+from trunnion.plan.freeform.reach import reached, samples_on
 from trunnion.plan.freeform.roughing.heights import HeightMap, region_below
 from trunnion.plan.freeform.roughing.layers import level_faces
 from trunnion.plan.freeform.space import SurfaceSpace
@@ -185,7 +185,7 @@ def test_level_faces_end_layers():
 
 
 def test_places_stand_for_equal_shares_of_the_area():
-    places = places_on(
+    places = samples_on(
         joined(
             grid(lambda x, y: 0 * x, n=3, high=(10.0, 10.0), tag=1),
             grid(lambda x, y: x, n=9, high=(10.0, 10.0), tag=2),
@@ -208,7 +208,7 @@ def test_a_ball_reaches_a_trough_that_is_wider_than_it_and_no_other():
         low=(0.0, 2.8),
         high=(10.0, 7.2),
     )
-    space, places = block(trough), places_on(trough, (1,), 300)
+    space, places = block(trough), samples_on(trough, (1,), 300)
     assert reached(space, places, BALL_4, 1.0).mean() > 0.9
     assert reached(space, places, BALL_6, 1.0).mean() < 0.1
 
@@ -217,7 +217,7 @@ def test_a_holder_that_would_touch_a_wall_keeps_a_cutter_out():
     floor = grid(lambda x, y: 0 * x, n=4, high=(30.0, 10.0))
     wall = grid(lambda x, y: 0 * x + 19.0, n=4, low=(0.0, 10.5), high=(30.0, 20.0), tag=2)
     space = block(joined(floor, wall))
-    places = places_on(space.skin, (1,), 200)
+    places = samples_on(space.skin, (1,), 200)
     near = np.abs(places.point[:, 1] - 8.0) < 1.0
     short, long = (
         replace(mill(2.0, 0.0, flute_length=5.0, stickout=length), form="ball", corner_radius=1.0)
@@ -263,7 +263,7 @@ def test_sides_of_a_block_stand_free_and_its_bottom_lies_in_the_blank():
     blank = replace(BLANK, low=np.array([-5.0, -5.0, 0.0]), high=np.array([45.0, 35.0, 20.0]))
     space = SurfaceSpace.of(part, skin_of(part, WORLD, 0.02), blank, replace(SETUP, frame=WORLD))
     assert [graph.normal[t - 1][2] for t in blank_faces(part, blank)] == pytest.approx([-1.0])
-    places = places_on(space.skin, part.tags)
+    places = samples_on(space.skin, part.tags)
     walls = walls_of(places, part.tags)
     assert len(walls) == 4
     assert on_outline(space, places, walls) == walls

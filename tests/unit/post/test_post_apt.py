@@ -25,7 +25,7 @@ from trunnion.model.motion.program import Program
 from trunnion.post.dialects.apt import AptDialect
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
-from trunnion.post.readers.apt import read_apt
+from trunnion.post.readers.apt.interpreter import read_apt
 from trunnion.post.settings import PostSettings
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")

@@ -22,7 +22,7 @@ from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
-from trunnion.shop.kinematics import NO_PLACES
+from trunnion.shop.kinematics import NO_WORK_POSITIONS
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
 START = "G21 G90 G54\nT1 M6\nS400 M3\nG0 G43 H1 X0 Y0 Z50\nG0 Z10\n"
@@ -38,7 +38,7 @@ def program(path: Toolpath, **changes) -> Program:
     return Program(name="B1.S1", setup=S1, sections=(made,))
 
 
-def words_of(made: Program, places=NO_PLACES):
+def words_of(made: Program, places=NO_WORK_POSITIONS):
     text = LinuxCncDialect().write([made], HEADER, PostSettings(), places)
     lines = [line.split(" ", 1)[1] for line in text.split("\n") if line.startswith("N")]
     return lines[lines.index("M8") + 3 : lines.index("M5 M9", lines.index("M8"))]

@@ -38,7 +38,7 @@ from trunnion.model.spindle import FeedMode
 from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
-from trunnion.toolpath.motion.reorient import SwingSphere, moved_over
+from trunnion.toolpath.motion.reorient import ClearanceSphere, moved_over
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
 TOOLS = (FLAT_16, BULL_10)
@@ -106,7 +106,7 @@ def test_rs274_moves_five_axes_as_we_mean(machine, tmp_path):
         moved_over(
             path,
             (case.section.path.position[-1], case.section.path.axis[-1]),
-            SwingSphere(centre=place.centre, radius=250.0),
+            ClearanceSphere(centre=place.centre, radius=250.0),
         ),
         tool=case.section.tool,
     )

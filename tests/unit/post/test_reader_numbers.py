@@ -15,7 +15,7 @@ from programs import FLAT_16, S1
 from trunnion.cli.programs.proof import operation_dict
 from trunnion.findings import BadInput, Severity
 from trunnion.model.verdict import Outcome
-from trunnion.post.readers.apt import read_apt
+from trunnion.post.readers.apt.interpreter import read_apt
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from verify_tools import clean_plan, proof
 

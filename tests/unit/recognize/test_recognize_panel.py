@@ -8,7 +8,7 @@ import pytest
 from blockparts import BlockPart, terrace
 from trunnion.findings import BadInput, Cancelled
 from trunnion.model.feature import Feature, Recognition
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.panel import PanelFamily
 from trunnion.settings import choose
 
@@ -17,7 +17,9 @@ X5, Y5 = (0, 10, 40, 60, 90, 100), (0, 10, 25, 40, 60, 70)
 
 
 def recognized(part: BlockPart, **words: float) -> Recognition:
-    return PanelFamily().recognize(part.graph(), part, choose(PanelFamily.settings, words), QUIET)
+    return PanelFamily().recognize(
+        part.graph(), part, choose(PanelFamily.settings, words), NO_PROGRESS
+    )
 
 
 def ringed(inner: list[list[float]]) -> list[list[float]]:
@@ -220,7 +222,7 @@ class Torn:
 def test_a_part_that_no_plane_can_cut_is_named() -> None:
     part = terrace((0, 10, 90, 100), (0, 10, 50, 60), ringed([[8]]))
     with pytest.raises(BadInput, match="can't be cut"):
-        PanelFamily().recognize(part.graph(), Torn(), choose(PanelFamily.settings, {}), QUIET)  # type: ignore[arg-type]
+        PanelFamily().recognize(part.graph(), Torn(), choose(PanelFamily.settings, {}), NO_PROGRESS)  # type: ignore[arg-type]
 
 
 class TornInTheMiddle(BlockPart):

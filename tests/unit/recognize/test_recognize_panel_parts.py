@@ -15,7 +15,7 @@ from trunnion.model.feature import Recognition
 from trunnion.part.part import Part
 from trunnion.part.read.part_file import read_part
 from trunnion.plan.size import size_table
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.panel import PanelFamily
 from trunnion.settings import choose
 
@@ -29,7 +29,9 @@ def file_of(name: str) -> Path:
 
 
 def recognized(part: Part) -> Recognition:
-    return PanelFamily().recognize(part.graph(), part, choose(PanelFamily.settings, {}), QUIET)
+    return PanelFamily().recognize(
+        part.graph(), part, choose(PanelFamily.settings, {}), NO_PROGRESS
+    )
 
 
 @cache

@@ -8,7 +8,7 @@ import pytest
 
 import samples
 from trunnion.model.feature import Recognition
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.panel import PanelFamily
 from trunnion.recognize.surface import SurfaceFamily
 from trunnion.settings import choose
@@ -16,7 +16,9 @@ from trunnion.settings import choose
 
 def recognized(shape: Any, suffix: str = "step") -> Recognition:
     part = samples.read(shape, suffix)
-    return PanelFamily().recognize(part.graph(), part, choose(PanelFamily.settings, {}), QUIET)
+    return PanelFamily().recognize(
+        part.graph(), part, choose(PanelFamily.settings, {}), NO_PROGRESS
+    )
 
 
 @pytest.mark.parametrize("degrees", [10.0, 37.3, 45.0])

@@ -12,7 +12,7 @@ from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.offsetting.trimming import MARGIN, PassTrimming
 from trunnion.toolpath.plane.rough import RoughSettings, rough
@@ -72,7 +72,7 @@ def test_everything_around_a_part_goes_whatever_the_rim_and_the_step(width, rim)
     tool = mill(16.0)
     drive = _open_drive(Region.rectangle(*LOW, *HIGH), part)
     stock = PlanningStock.of(BLANK, SETUP)
-    planned = rough(drive, tool, cutting(4.0, width), stock, SETUP, RoughSettings(), QUIET)
+    planned = rough(drive, tool, cutting(4.0, width), stock, SETUP, RoughSettings(), NO_PROGRESS)
     milled = Milled(LOW, HIGH, 0.0).cut(planned.path, tool)
     wanted = drive.levels[0].wanted.offset(-0.3)
     inside = wanted.signed_distance(milled.points).reshape(milled.x.shape) > 0.0
@@ -86,7 +86,7 @@ def test_hardly_any_way_is_fed_through_air():
     tool = mill(20.0)
     drive = _open_drive(Region.rectangle(*LOW, *HIGH), part)
     stock = PlanningStock.of(BLANK, SETUP)
-    path = rough(drive, tool, cutting(4.0, 8.0), stock, SETUP, RoughSettings(), QUIET).path
+    path = rough(drive, tool, cutting(4.0, 8.0), stock, SETUP, RoughSettings(), NO_PROGRESS).path
     way = np.linalg.norm(np.diff(path.position, axis=0, prepend=path.position[:1]), axis=1)
     cut = way[path.mark == Mark.CUT].sum()
     # One pass along the four sides of the part; before, two rings ran around it out in the open.

@@ -12,7 +12,7 @@ from trunnion.model.operation import OperationPath
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import findings_of, make_paths
 from trunnion.plan.prismatic.drive import PlaneDrive
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import settings
 from trunnion.toolpath.contract import (
     Planned,
@@ -87,7 +87,7 @@ def test_a_strategy_of_any_name_gets_the_drive_it_declares(routed, registered) -
     make_paths(
         replace(session, process=replace(session.process, operations=(first,)), paths=()),
         engine.context,
-        QUIET,
+        NO_PROGRESS,
     )
     assert got == [PlaneDrive]
 

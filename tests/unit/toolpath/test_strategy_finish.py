@@ -14,7 +14,7 @@ from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.plane.corner import CornerSettings, corner
 from trunnion.toolpath.plane.floor import FloorSettings, floor
 from trunnion.toolpath.plane.rough import RoughSettings, rough
@@ -43,7 +43,9 @@ class Shop:
         depth: float = 6.0,
         width: float = 5.0,
     ) -> Toolpath:
-        planned = strategy(drive, tool, cutting(depth, width), self.stock, SETUP, settings, QUIET)  # type: ignore[operator]
+        planned = strategy(
+            drive, tool, cutting(depth, width), self.stock, SETUP, settings, NO_PROGRESS
+        )  # type: ignore[operator]
         self.stock = self.stock.after(planned.path, tool)
         self.milled.cut(planned.path, tool)
         self.paths.append(planned.path)
@@ -167,7 +169,7 @@ def test_corners_sharper_than_the_cutter_are_named_and_a_smaller_one_finishes_th
         width=3.0,
     )
     shop.run(floor, drive, tool, FloorSettings())
-    planned = wall(drive, tool, cutting(12, 1), shop.stock, SETUP, WallSettings(), QUIET)
+    planned = wall(drive, tool, cutting(12, 1), shop.stock, SETUP, WallSettings(), NO_PROGRESS)
     assert [f.code for f in planned.findings] == ["wall.left"]
     shop.run(wall, drive, tool, WallSettings(), depth=12.0)
     shop.run(
@@ -193,7 +195,7 @@ def test_corner_passes_stay_in_the_corners() -> None:
         PlanningStock.of(BLANK, SETUP),
         SETUP,
         CornerSettings(),
-        QUIET,
+        NO_PROGRESS,
     ).path
     feeds = path.position[path.mark == Mark.CUT, :2]
     corners = np.array([[0, 0], [60, 0], [60, 40], [0, 40]])
@@ -209,7 +211,7 @@ def test_a_corner_cutter_that_is_still_too_large_says_what_stays() -> None:
         PlanningStock.of(BLANK, SETUP),
         SETUP,
         CornerSettings(),
-        QUIET,
+        NO_PROGRESS,
     )
     assert [f.code for f in planned.findings] == ["corner.left"]
 
@@ -232,7 +234,7 @@ def test_an_open_wall_is_cut_straight_past_its_ends() -> None:
         PlanningStock.of(BLANK, SETUP),
         SETUP,
         WallSettings(floor_rest=False),
-        QUIET,
+        NO_PROGRESS,
     ).path
     cut = path.position[path.mark == Mark.CUT]
     assert cut[:, 1] == pytest.approx(25.0, abs=1e-3)
@@ -257,7 +259,7 @@ def test_a_wall_where_the_cutter_has_no_room_is_an_error() -> None:
         PlanningStock.of(BLANK, SETUP),
         SETUP,
         WallSettings(),
-        QUIET,
+        NO_PROGRESS,
     )
     assert [f.code for f in planned.findings] == ["wall.too-narrow"]
 
@@ -271,7 +273,7 @@ def test_a_floor_where_the_cutter_has_no_room_is_left_with_a_warning() -> None:
         PlanningStock.of(BLANK, SETUP),
         SETUP,
         FloorSettings(),
-        QUIET,
+        NO_PROGRESS,
     )
     assert [(f.code, f.severity) for f in planned.findings] == [
         ("floor.too-wide", Severity.WARNING)
@@ -291,7 +293,13 @@ def test_a_sharp_foot_is_cut_without_touching_the_rounder_ones_beside_it() -> No
         plan.minus(island), DEPTH, floors=(), walls=(guides[1],), beside=(guides[0],)
     )
     path = wall(
-        drive, cutter, cutting(3, 3), PlanningStock.of(BLANK, SETUP), SETUP, WallSettings(), QUIET
+        drive,
+        cutter,
+        cutting(3, 3),
+        PlanningStock.of(BLANK, SETUP),
+        SETUP,
+        WallSettings(),
+        NO_PROGRESS,
     ).path
     deep = path.position[np.abs(path.position[:, 2] + DEPTH) < 1e-9]
     assert len(deep)

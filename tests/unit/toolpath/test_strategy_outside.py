@@ -9,7 +9,7 @@ from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, roun
 from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.plane.face import FaceSettings, face
 from trunnion.toolpath.plane.profile import (
     ProfileFinishSettings,
@@ -46,7 +46,7 @@ def test_facing_leaves_the_whole_top_at_its_height(width: float, pattern: str) -
         STOCK,
         SETUP,
         FaceSettings(pattern=pattern),
-        QUIET,
+        NO_PROGRESS,
     )
     milled = columns().cut(planned.path, mill(40))
     assert (milled.height == 0.0).all()
@@ -55,7 +55,7 @@ def test_facing_leaves_the_whole_top_at_its_height(width: float, pattern: str) -
 
 def test_a_tall_blank_is_faced_along_its_longer_side() -> None:
     drive = facing(10, (0, 0), (20, 80))
-    path = face(drive, mill(20), cutting(2.0, 8.0), STOCK, SETUP, FaceSettings(), QUIET).path
+    path = face(drive, mill(20), cutting(2.0, 8.0), STOCK, SETUP, FaceSettings(), NO_PROGRESS).path
     rows = np.abs(path.position - path.starts())[
         (path.motion == Motion.LINE) & (path.mark == Mark.CUT)
     ]
@@ -63,7 +63,9 @@ def test_a_tall_blank_is_faced_along_its_longer_side() -> None:
 
 
 def test_facing_turns_outside_the_blank() -> None:
-    path = face(facing(10), mill(40), cutting(2.0, 24.0), STOCK, SETUP, FaceSettings(), QUIET).path
+    path = face(
+        facing(10), mill(40), cutting(2.0, 24.0), STOCK, SETUP, FaceSettings(), NO_PROGRESS
+    ).path
     turns = path.position[path.motion >= Motion.ARC_CW, 0]
     assert len(turns) and ((turns < -5 - 20) | (turns > 85 + 20)).all()
 
@@ -93,7 +95,7 @@ def profile(allowance: float = 0.0) -> PlaneDrive:
 def test_the_profile_is_roughed_to_its_allowance_and_finished_exactly() -> None:
     stock, tool, milled = STOCK, mill(12), columns()
     first = profile_rough(
-        profile(0.3), tool, cutting(6, 4), stock, SETUP, ProfileRoughSettings(), QUIET
+        profile(0.3), tool, cutting(6, 4), stock, SETUP, ProfileRoughSettings(), NO_PROGRESS
     )
     milled.cut(first.path, tool)
     outside = OUTLINE.signed_distance(milled.points).reshape(milled.x.shape)
@@ -106,7 +108,7 @@ def test_the_profile_is_roughed_to_its_allowance_and_finished_exactly() -> None:
         stock.after(first.path, tool),
         SETUP,
         ProfileFinishSettings(),
-        QUIET,
+        NO_PROGRESS,
     )
     milled.cut(last.path, tool)
     assert (milled.height[outside > 0.01] == 2.0).all()
@@ -119,21 +121,21 @@ def test_the_profile_is_roughed_to_its_allowance_and_finished_exactly() -> None:
 def test_the_flutes_not_the_shank_meet_what_roughing_left_over_a_wall(flute, passes) -> None:
     roughed = STOCK.after(
         profile_rough(
-            profile(0.3), mill(12), cutting(6, 4), STOCK, SETUP, ProfileRoughSettings(), QUIET
+            profile(0.3), mill(12), cutting(6, 4), STOCK, SETUP, ProfileRoughSettings(), NO_PROGRESS
         ).path,
         mill(12),
     )
     # The wall is 20 mm tall, its allowance stands 2 mm higher.
     path = profile_finish(
         profile(), mill(12, flute_length=flute), cutting(20, 4), roughed, SETUP,
-        ProfileFinishSettings(), QUIET,
+        ProfileFinishSettings(), NO_PROGRESS,
     ).path  # fmt: skip
     assert len(np.unique(path.position[path.mark == Mark.CUT, 2].round(3))) == passes
 
 
 def test_the_profile_is_cut_clockwise_so_that_it_climbs() -> None:
     path = profile_finish(
-        profile(), mill(12), cutting(20, 4), STOCK, SETUP, ProfileFinishSettings(), QUIET
+        profile(), mill(12), cutting(20, 4), STOCK, SETUP, ProfileFinishSettings(), NO_PROGRESS
     ).path
     arcs = path.motion[(path.mark == Mark.CUT) & (path.motion >= Motion.ARC_CW)]
     assert len(arcs) and (arcs == Motion.ARC_CW).all()
@@ -141,7 +143,7 @@ def test_the_profile_is_cut_clockwise_so_that_it_climbs() -> None:
 
 def test_the_profile_is_approached_from_outside_the_blank() -> None:
     path = profile_finish(
-        profile(), mill(12), cutting(20, 4), STOCK, SETUP, ProfileFinishSettings(), QUIET
+        profile(), mill(12), cutting(20, 4), STOCK, SETUP, ProfileFinishSettings(), NO_PROGRESS
     ).path
     down = np.flatnonzero(path.position[1:, 2] < path.position[:-1, 2] - 5.0) + 1
     x, y = path.position[down, :2].T
@@ -150,7 +152,7 @@ def test_the_profile_is_approached_from_outside_the_blank() -> None:
 
 def test_a_bull_cutter_that_can_not_finish_the_bottom_edge_is_warned_about() -> None:
     planned = profile_finish(
-        profile(), mill(12, 2.0), cutting(20, 4), STOCK, SETUP, ProfileFinishSettings(), QUIET
+        profile(), mill(12, 2.0), cutting(20, 4), STOCK, SETUP, ProfileFinishSettings(), NO_PROGRESS
     )
     assert [f.code for f in planned.findings] == ["profile.corner"]
 
@@ -170,7 +172,7 @@ def test_a_rib_between_two_walls_is_cut_to_its_height_with_its_flares(thickness:
     top = between.minus(left).minus(right).intersect(Region.rectangle(20, 0, 60, 50))
     milled = Milled((0, 0), (80, 50), 0.0)
     planned = rib_top(
-        rib(between, top), mill(12), cutting(3, 5), STOCK, SETUP, RibTopSettings(), QUIET
+        rib(between, top), mill(12), cutting(3, 5), STOCK, SETUP, RibTopSettings(), NO_PROGRESS
     )
     milled.cut(planned.path, mill(12))
     inside = top.signed_distance(milled.points).reshape(milled.x.shape) > 0.0
@@ -187,7 +189,7 @@ def test_a_rib_keeps_clear_of_the_walls_at_its_ends() -> None:
         STOCK,
         SETUP,
         RibTopSettings(),
-        QUIET,
+        NO_PROGRESS,
     )
     down = planned.path.position[planned.path.position[:, 2] < -0.5, :2]
     assert between.signed_distance(down).min() >= 6.0 - 1e-6
@@ -201,7 +203,7 @@ def test_a_rib_where_the_cutter_has_no_room_is_an_error() -> None:
         STOCK,
         SETUP,
         RibTopSettings(),
-        QUIET,
+        NO_PROGRESS,
     )
     assert [f.code for f in planned.findings] == ["rib.too-narrow"]
 
@@ -216,7 +218,7 @@ def test_an_islands_top_is_cut_inside_its_pocket() -> None:
     )
     milled = Milled((0, 0), (80, 50), 0.0)
     milled.cut(
-        rib_top(drive, mill(12), cutting(3, 5), STOCK, SETUP, RibTopSettings(), QUIET).path,
+        rib_top(drive, mill(12), cutting(3, 5), STOCK, SETUP, RibTopSettings(), NO_PROGRESS).path,
         mill(12),
     )
     assert (

@@ -10,7 +10,7 @@ from trunnion.findings import Cancelled, Severity
 from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.plane.rough import RoughSettings, rough
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -29,7 +29,7 @@ def cut(
         PlanningStock.of(BLANK, SETUP),
         SETUP,
         RoughSettings(),
-        QUIET,
+        NO_PROGRESS,
     )
     return planned, Milled((-20, -20), (100, 70), 0.0).cut(planned.path, tool)
 
@@ -143,8 +143,10 @@ def test_corners_out_of_reach_are_named_with_their_area() -> None:
 def test_what_an_operation_before_has_cleared_is_not_cut_again() -> None:
     drive, tool, data = with_allowances(PLAN, 20.0), mill(16), cutting(6, 6)
     stock = PlanningStock.of(BLANK, SETUP)
-    first = rough(drive, tool, data, stock, SETUP, RoughSettings(), QUIET)
-    again = rough(drive, tool, data, stock.after(first.path, tool), SETUP, RoughSettings(), QUIET)
+    first = rough(drive, tool, data, stock, SETUP, RoughSettings(), NO_PROGRESS)
+    again = rough(
+        drive, tool, data, stock.after(first.path, tool), SETUP, RoughSettings(), NO_PROGRESS
+    )
     assert len(again.path) == 0
 
 

@@ -9,10 +9,10 @@ from pytest import approx
 
 from milling import SETUP, box_blank
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
-from trunnion.toolpath.motion.reorient import STEP, joined, moved_over, swing_of, turn
+from trunnion.toolpath.motion.reorient import STEP, clearance_sphere, joined, moved_over, turn
 
 UP = np.array([0.0, 0.0, 1.0])
-SWING = swing_of(box_blank((-30, -20, -40), (30, 20, 0)), SETUP)
+SWING = clearance_sphere(box_blank((-30, -20, -40), (30, 20, 0)), SETUP)
 
 
 def lean(degrees: float, around: float = 0.0) -> np.ndarray:

@@ -64,9 +64,9 @@ def test_rapids_remove_nothing() -> None:
 
 def test_places_that_are_higher_are_found_in_an_area_only() -> None:
     stock = PlanningStock.of(BLANK, SETUP)
-    assert len(stock.places_above(1.0, Region.rectangle(10, 10, 12, 12))) == 16
-    assert len(stock.places_above(2.0, Region.rectangle(10, 10, 12, 12))) == 0
-    assert len(stock.places_above(1.0, Region.rectangle(100, 10, 120, 12))) == 0
+    assert len(stock.positions_above(1.0, Region.rectangle(10, 10, 12, 12))) == 16
+    assert len(stock.positions_above(2.0, Region.rectangle(10, 10, 12, 12))) == 0
+    assert len(stock.positions_above(1.0, Region.rectangle(100, 10, 120, 12))) == 0
 
 
 @pytest.mark.parametrize("corner", [0.0, 2.0, 6.0])

@@ -41,7 +41,7 @@ from trunnion.post.header import Header
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
-from trunnion.shop.kinematics import NO_PLACES
+from trunnion.shop.kinematics import NO_WORK_POSITIONS
 from trunnion.store.mapping import Members, from_xml, to_xml
 from trunnion.store.process import write_process
 from trunnion.verify.motion import moves_of
@@ -56,7 +56,7 @@ def program(*sections) -> Program:
     return Program(name="B1.S1", setup=S1, sections=sections)
 
 
-def text_of(made: Program, places=NO_PLACES) -> str:
+def text_of(made: Program, places=NO_WORK_POSITIONS) -> str:
     return LinuxCncDialect().write([made], HEADER, PostSettings(), places)
 
 

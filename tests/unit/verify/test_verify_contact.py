@@ -119,7 +119,7 @@ def test_a_floor_is_touched_without_a_gouge_and_entered_in_its_middle():
         )
     )
     assert depths.depth[:, 0] == approx([0.0, 0.0, 0.0, 0.03])
-    assert depths.place[3, 0] == approx([30, 25, 0.0], abs=5.1)
+    assert depths.position[3, 0] == approx([30, 25, 0.0], abs=5.1)
 
 
 def test_a_helix_is_as_deep_as_its_lowest_turn():
@@ -421,8 +421,8 @@ def test_places_lie_on_the_guide_where_it_is_nearest_to_the_path():
     found = PartContact(surfaces_from([ContactFace(1, WALL[None], NO_LEVEL, NO_CHORDS)])).along(
         moves_of([program_section(flat(10.0)(), [(40, -20, 5), (40, -4.9, 5)])])
     )
-    points = guide_points(WALL, float(found.place[-1, 0, 2]), np.linspace(0.0, 1.0, 65))
-    assert found.place[-1, 0] == approx(
+    points = guide_points(WALL, float(found.position[-1, 0, 2]), np.linspace(0.0, 1.0, 65))
+    assert found.position[-1, 0] == approx(
         points[np.argmin(np.hypot(points[:, 0] - 40.0, points[:, 1] + 4.9))]
     )
 
@@ -494,7 +494,7 @@ def test_a_holder_over_a_clamp_is_a_contact_with_the_fixture_and_not_with_the_pa
     assert found.depth == approx(np.zeros((3, 2)))
     assert found.fixture_depth == approx([0.0, 0.0, depth], abs=BOUND)
     assert found.fixture.tolist() == [-1, -1, 1 if depth else -1]
-    assert np.isnan(found.fixture_place[:2]).all()
+    assert np.isnan(found.fixture_position[:2]).all()
 
 
 def test_a_pose_with_its_cutter_in_a_clamp_is_not_clear():
@@ -544,13 +544,15 @@ def test_material_left_is_the_distance_to_the_nearest_sweep():
         flat(10.0)(flute=8.0), [(0, 0, 20), (0, 0, 2), (50, 0, 2), (50, 0, 20)]
     )
     points = np.array([[25, 0, 0.0], [25, 6, 5], [25, 0, 11.0], [25, 4.5, 2.25], [25, 90, 5]])
-    left, _ = Sweep.of(moves_of([section]), 3.0).left(points, np.full(5, 3.0))
+    left, _ = Sweep.of(moves_of([section]), 3.0).residual(points, np.full(5, 3.0))
     # Below by 2; beside by 1; above the flutes by 1; inside by a quarter; too far to be looked at.
     assert left == approx([2.0, 1.0, 1.0, -0.25, 3.0])
 
 
 def test_material_left_by_a_ramp_is_within_the_bound():
     section = program_section(flat(10.0)(), [(0, 0, 10), (100, 0, 0)])
-    left, _ = Sweep.of(moves_of([section]), 3.0).left(np.array([[50.0, 0.0, 4.0]]), np.array([3.0]))
+    left, _ = Sweep.of(moves_of([section]), 3.0).residual(
+        np.array([[50.0, 0.0, 4.0]]), np.array([3.0])
+    )
     # The rim of the flat end reaches (50, z) last when its centre is at 55: 4.5 high.
     assert left == approx([0.5 * 10 / math.hypot(10.0, 1.0)], abs=0.01)

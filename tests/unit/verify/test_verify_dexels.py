@@ -16,7 +16,7 @@ from trunnion.findings import BadInput, Cancelled, OutOfMemory
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Box
 from trunnion.model.motion.toolpath import Motion
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import Stock, run_stock
@@ -307,7 +307,7 @@ def test_a_leaning_rapid_through_stock_is_as_deep_as_it_goes(depth):
     # The rim's corner is square: of the material's triangle in it the deepest is on the top, as far from end as from flank.
     deepest = depth / (math.sin(lean) + math.cos(lean))
     assert 0.5 * deepest < run.rapid_depth[2] <= deepest + 1e-6
-    assert run.rapid_place[2, 2] == approx(20.0, abs=depth)
+    assert run.rapid_position[2, 2] == approx(20.0, abs=depth)
 
 
 def with_rapids(section):
@@ -455,7 +455,7 @@ def test_cancel_is_heard_within_a_fifth_of_a_second():
         whole(5.0),
         moves_of([leaning_section(flat(16.0)(), [(0, 0, 0), (1, 1, 1)], [UP, UP])]),
         WORLD,
-        progress=QUIET,
+        progress=NO_PROGRESS,
     )
     began = time.perf_counter()
     with pytest.raises(Cancelled):

@@ -90,7 +90,7 @@ def test_a_flat_end_that_leans_enters_a_floor_with_its_rim(below, lean):
     tip = 5.0 * math.sin(math.radians(lean)) - below
     found = touch(FLOOR, flat(10.0)(), ((0, 0, tip), leaning(lean)), ((30, 7, tip), leaning(lean)))
     assert found.depth[0, 0] == approx(rim_depth(below, lean), abs=FIXED)
-    assert found.place[0, 0, 2] == approx(0.0, abs=1e-9)
+    assert found.position[0, 0, 2] == approx(0.0, abs=1e-9)
 
 
 def test_a_sharp_rim_is_found_on_a_narrow_strip_between_two_places():
@@ -239,7 +239,7 @@ def test_any_number_of_threads_gives_the_same():
     rows = np.arange(len(moves))
     one, four = JOB.along(moves, rows, threads=1), JOB.along(moves, rows, threads=4)
     assert (one.depth > 0.01).any()
-    for name in ("depth", "face", "place", "face_depth", "face_move"):
+    for name in ("depth", "face", "position", "face_depth", "face_move"):
         assert getattr(one, name).tobytes() == getattr(four, name).tobytes()
 
 
@@ -272,7 +272,7 @@ def test_the_tree_holds_every_triangle_once_inside_its_boxes():
 
 
 def test_compiled_loops_agree_with_themselves_uncompiled():
-    way, plain = np.zeros(kernel.WAY_COLUMNS), np.zeros(kernel.WAY_COLUMNS)
+    way, plain = np.zeros(kernel.MOTION_COLUMNS), np.zeros(kernel.MOTION_COLUMNS)
     start, end, centre = np.array([1.0, 2.0, 3.0]), np.array([4.0, 1.0, 2.0]), np.full(3, np.nan)
     for turned in (leaning(30), leaning(-170), (0.0, 0.0, -1.0)):
         args = start, end, np.array(leaning(0)), np.array(turned), centre, 0.0

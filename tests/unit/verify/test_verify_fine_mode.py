@@ -173,7 +173,7 @@ def test_two_operations_5_microns_apart_make_a_step_of_5_microns():
     ]
     found = fine_measure([Plane(end=(4.0, 9.0))], moves_of(sections), 0.2)
     assert found.step.value == approx(0.005, abs=FINE_BOUND)
-    assert found.step.place[1] == approx(5.0, abs=0.3) and found.gouge.value == approx(
+    assert found.step.position[1] == approx(5.0, abs=0.3) and found.gouge.value == approx(
         0.005, abs=FINE_BOUND
     )
     assert found.scallop.value == approx(0.0, abs=FINE_BOUND)
@@ -270,7 +270,10 @@ def test_rings_leave_the_scallop_of_their_pitch():
 def test_any_number_of_threads_measures_the_same_and_it_stops_when_asked():
     moves = moves_of([passes(EVERY_FORM["ball"], np.arange(-1.0, 5.0, 0.7))])
     one, three = (fine_measure([Plane(end=(2.0, 2.0))], moves, 0.2, threads=n) for n in (1, 3))
-    assert one.left.tobytes() == three.left.tobytes() and one.scallop.value == three.scallop.value
+    assert (
+        one.residual.tobytes() == three.residual.tobytes()
+        and one.scallop.value == three.scallop.value
+    )
     with pytest.raises(Cancelled):
         fine_measure([Plane()], moves, 0.05, progress=Progress(cancelled=lambda: True))
 

@@ -19,7 +19,7 @@ from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
 from trunnion.verify.judge.load import least_angle, load_of, mean_share, stretched
-from trunnion.verify.judge.overload import chosen_load
+from trunnion.verify.judge.overload import allowed_load
 from trunnion.verify.motion import moves_of
 from trunnion.verify.stock import StockRun
 from verify_tools import BLANK, MACHINE, TOP, flat, program_section, proof
@@ -58,7 +58,7 @@ def test_a_full_slot_has_the_chips_and_the_power_of_the_formula():
     run = StockRun(
         removed=np.where(moves.rapid, 0.0, 60.0 * moves.length),
         rapid_depth=np.zeros(4),
-        rapid_place=np.zeros((4, 3)),
+        rapid_position=np.zeros((4, 3)),
         body_depth=np.zeros(4),
         engagement=np.full(4, math.pi),
         depth_of_cut=np.full(4, 6.0),
@@ -131,7 +131,7 @@ def test_a_short_widening_counts_for_no_more_than_its_own_section():
     run = StockRun(
         removed=np.where(moves.rapid, 0.0, 3.4 * moves.length),
         rapid_depth=np.zeros(4),
-        rapid_place=np.zeros((4, 3)),
+        rapid_position=np.zeros((4, 3)),
         body_depth=np.zeros(4),
         engagement=np.full(4, 2.0),
         depth_of_cut=np.full(4, 6.5),
@@ -221,10 +221,10 @@ def test_a_feed_that_makes_chips_too_thick_is_excess_even_where_little_is_remove
 
 
 def test_the_tables_of_the_material_widen_what_a_finishing_cut_may_meet():
-    finishing = chosen_load(slot(width=0.3, depth=2.0), MATERIAL)
+    finishing = allowed_load(slot(width=0.3, depth=2.0), MATERIAL)
     assert finishing.rate == approx(0.6 * 0.25 * 100.0 * 3.0)
     assert finishing.chip == approx(0.12)
-    assert chosen_load(slot(width=0.3, depth=2.0), None).rate == approx(0.6 * 3.0)
+    assert allowed_load(slot(width=0.3, depth=2.0), None).rate == approx(0.6 * 3.0)
 
 
 def test_nothing_is_said_of_loads_where_nothing_is_known():

@@ -13,7 +13,7 @@ from leaning_tools import EVERY_FORM, PlainCutter, cutter, leaning_section
 from trunnion.findings import Cancelled
 from trunnion.model.motion.toolpath import Motion
 from trunnion.progress import Progress
-from trunnion.verify.finish.sweep import LEFT_BOUND, Sweep, flutes_of, left_by_block
+from trunnion.verify.finish.sweep import RESIDUAL_BOUND, Sweep, flutes_of, residual_by_block
 from trunnion.verify.kernels import residual as kernel
 from trunnion.verify.motion import moves_of
 from verify_tools import bull, flat, program_section
@@ -23,7 +23,7 @@ UP, LEVEL = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 
 def left(section, points, most=20.0, near=20.0):
     points = np.atleast_2d(np.asarray(points, dtype=np.float64))
-    return Sweep.of(moves_of([section]), near).left(points, np.full(len(points), most))[0]
+    return Sweep.of(moves_of([section]), near).residual(points, np.full(len(points), most))[0]
 
 
 @pytest.mark.parametrize("form", EVERY_FORM)
@@ -78,7 +78,7 @@ def test_a_drill_that_plunges_leaves_its_cone():
     # Half of 118 degrees: below the flank the hole narrows by tan 59 a millimetre.
     section = leaning_section(EVERY_FORM["drill"], [[0, 0, 20.0], [0, 0, -10]], [UP, UP])
     assert left(section, [[5.0, 0, 0.0], [0, 0, -10.0], [0, 0, -12]]) == approx(
-        [0.0, 0.0, 2.0], abs=LEFT_BOUND
+        [0.0, 0.0, 2.0], abs=RESIDUAL_BOUND
     )
 
 
@@ -87,7 +87,7 @@ def test_a_leaning_plunge_goes_along_its_own_axis():
     section = leaning_section(EVERY_FORM["flat"], [20 * axis, 0 * axis], [axis, axis])
     beside = np.array([-0.8, 0.0, 0.6])
     assert left(section, [7.0 * axis + 6.0 * beside, -1.0 * axis, 41.0 * axis]) == approx(
-        [1.0, 1.0, 1.0], abs=LEFT_BOUND
+        [1.0, 1.0, 1.0], abs=RESIDUAL_BOUND
     )
 
 
@@ -121,7 +121,7 @@ def test_a_helix_about_a_leaning_axis_is_the_upright_one_turned(climb):
         ),
         points @ turn.T,
     )
-    assert turned == approx(upright, abs=2 * LEFT_BOUND)
+    assert turned == approx(upright, abs=2 * RESIDUAL_BOUND)
 
 
 def test_an_axis_that_turns_about_the_tip_sweeps_a_fan():
@@ -131,7 +131,7 @@ def test_an_axis_that_turns_about_the_tip_sweeps_a_fan():
     # The rim of the flutes' top comes round to the middle of the fan from both sides.
     far = 21.0 - math.hypot(20.0, 5.0)
     assert left(section, [10.0 * way + [0, 5.5, 0], 21.0 * way, [-1.0, 0.0, -1.0]]) == approx(
-        [0.5, far, 1.0], abs=2 * LEFT_BOUND
+        [0.5, far, 1.0], abs=2 * RESIDUAL_BOUND
     )
 
 
@@ -164,11 +164,11 @@ def test_only_earlier_moves_have_cut():
 def test_rapids_cut_nothing():
     section = program_section(flat(10.0)(), [(0, 0, 0), (50, 0, 0)], rapid_to=1)
     sweep = Sweep.of(moves_of([section]), 2.0)
-    assert sweep.left(np.zeros((1, 3)), np.array([9.0]))[1].tolist() == [-1]
+    assert sweep.residual(np.zeros((1, 3)), np.array([9.0]))[1].tolist() == [-1]
 
 
 def test_blocks_are_told_what_they_left_on_the_samples_nearest_to_them():
-    told = left_by_block(
+    told = residual_by_block(
         np.array([0.1, 0.3, -0.2, 5.0]),
         np.array([1, 1, 2, -1]),
         4,
@@ -183,7 +183,7 @@ def test_any_number_of_threads_measures_the_same():
     upright = program_section(bull(8.0, 2.0)(), [(0, 0, 9), (90, 90, 3), (0, 150, 3)])
     sweep = Sweep.of(moves_of([five_axis_case(500, 100).section, upright]), 2.0)
     points = surface(*np.random.default_rng(0).uniform(0.0, 200.0, (2, 3000)))[0]
-    one, three = (sweep.left(points, np.full(len(points), 30.0), threads=n) for n in (1, 3))
+    one, three = (sweep.residual(points, np.full(len(points), 30.0), threads=n) for n in (1, 3))
     assert one[0].tobytes() == three[0].tobytes() and one[1].tobytes() == three[1].tobytes()
     assert (
         sweep.cut_before(points, 300, threads=1).tobytes()
@@ -194,7 +194,7 @@ def test_any_number_of_threads_measures_the_same():
 def test_measuring_stops_when_asked_to():
     sweep = Sweep.of(moves_of([program_section(flat(10.0)(), [(0, 0, 9), (90, 90, 3)])]), 2.0)
     with pytest.raises(Cancelled):
-        sweep.left(np.zeros((5000, 3)), np.full(5000, 3.0), Progress(cancelled=lambda: True))
+        sweep.residual(np.zeros((5000, 3)), np.full(5000, 3.0), Progress(cancelled=lambda: True))
 
 
 def test_a_taper_leaves_its_lean_on_a_wall():

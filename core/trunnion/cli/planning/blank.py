@@ -15,17 +15,17 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the blank's size, volume and mass."""
-    _, session = open_session(chosen, "blank")
+    _, session = open_session(options, "blank")
     blank = session.blank
     assert blank is not None
-    if chosen.step:
+    if options.step:
         from trunnion.part.build import ShapeBuilder
         from trunnion.part.write import write_step
 
-        write_step(blank.built(ShapeBuilder()), chosen.step)
-    if chosen.json:
+        write_step(blank.built(ShapeBuilder()), options.step)
+    if options.json:
         show_json(
             {
                 "kind": blank.kind,
@@ -43,5 +43,5 @@ def run(chosen: argparse.Namespace) -> int:
         print(
             f"{blank.kind} {sizes} mm of {blank.material}, {blank.volume / 1e3:.1f} cm3, {blank.mass:.2f} kg"
         )
-    show_findings(chosen, session.findings())
+    show_findings(options, session.findings())
     return exit_code(session.findings())

@@ -26,14 +26,14 @@ def add(commands: Any) -> None:
     part_command(commands, "optimize", "speeds, feeds and the power check").set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print each operation's cutting data beside the spindle's power."""
     from trunnion.pipeline.planning.finishing_estimate import estimate
 
-    engine, session = open_session(chosen, "optimize")
+    engine, session = open_session(options, "optimize")
     process, areas = session.process, estimate(session, engine.context_of(session))
     assert process is not None
-    if chosen.json:
+    if options.json:
         show_json(
             {
                 "operations": [
@@ -82,7 +82,7 @@ def run(chosen: argparse.Namespace) -> int:
         if areas is not None:
             print()
             print(estimate_table(areas))
-    show_findings(chosen, session.findings())
+    show_findings(options, session.findings())
     return exit_code(session.findings())
 
 

@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
-    add_by_hand,
+    add_manual_edits,
     exit_code,
     open_session,
     part_command,
     show_findings,
     show_json,
     table,
-    with_by_hand,
+    with_manual_edits,
 )
 
 if TYPE_CHECKING:
@@ -33,23 +33,23 @@ def add(commands: Any) -> None:
         metavar="FILE",
         help="write a project with the features, those changed by hand among them, as well",
     )
-    add_by_hand(made)
+    add_manual_edits(made)
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the features and what nothing explains."""
-    engine, session = open_session(chosen, "recognize")
-    session = with_by_hand(chosen, engine, session)
+    engine, session = open_session(options, "recognize")
+    session = with_manual_edits(options, engine, session)
     part, found = session.part, session.recognition
     assert part is not None and found is not None
-    if chosen.xml:
+    if options.xml:
         from trunnion.store.features import write_features
 
-        write_features(session, chosen.xml)
-    if chosen.save:
-        engine.save(session, chosen.save)
-    if chosen.json:
+        write_features(session, options.xml)
+    if options.save:
+        engine.save(session, options.save)
+    if options.json:
         show_json(
             {
                 "part": part.name,
@@ -73,7 +73,7 @@ def run(chosen: argparse.Namespace) -> int:
         print(
             f"unexplained: {len(found.unexplained)} faces, {100 * found.unexplained_share:.2f} % of the area"
         )
-    show_findings(chosen, session.findings())
+    show_findings(options, session.findings())
     return exit_code(session.findings())
 
 

@@ -16,12 +16,12 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the process tree."""
-    _, session = open_session(chosen, "route")
+    _, session = open_session(options, "route")
     process = session.process
     assert process is not None
-    if chosen.json:
+    if options.json:
         show_json(
             {
                 "plan": process.plan,
@@ -33,8 +33,8 @@ def run(chosen: argparse.Namespace) -> int:
         )
     else:
         print(operation_table(process.operations))
-        if chosen.rules:
+        if options.rules:
             for o in process.operations:
                 print(f"{o.id}: " + "; ".join(o.rules))
-    show_findings(chosen, session.findings())
+    show_findings(options, session.findings())
     return exit_code(session.findings())

@@ -20,10 +20,10 @@ def add(commands: Any) -> None:
     part_command(commands, "size", "the table of sizes").set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the size table."""
-    _, session = open_session(chosen, "size")
-    if chosen.json:
+    _, session = open_session(options, "size")
+    if options.json:
         show_json(
             {
                 "sizes": [s.as_dict() for s in session.sizes],
@@ -36,5 +36,5 @@ def run(chosen: argparse.Namespace) -> int:
             *((s.name, f"{s.value:.3f}", s.unit, s.feature) for s in session.sizes),
         ]
         print(table(rows, right=(1,)))
-    show_findings(chosen, session.findings())
+    show_findings(options, session.findings())
     return exit_code(session.findings())

@@ -33,15 +33,15 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run, name="", date="")
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Program every part and print a line for each."""
-    check_output(chosen.output)
+    check_output(options.output)
     results, worst = [], 0
-    for part in chosen.parts:
-        code, words = _one(chosen, part)
+    for part in options.parts:
+        code, words = _one(options, part)
         worst = max(worst, code)
         results.append((part, *words))
-    if chosen.json:
+    if options.json:
         show_json(
             {
                 "parts": [
@@ -55,11 +55,11 @@ def run(chosen: argparse.Namespace) -> int:
     return worst
 
 
-def _one(chosen: argparse.Namespace, part: str) -> tuple[int, tuple[str, str, str]]:
-    chosen.part = part
+def _one(options: argparse.Namespace, part: str) -> tuple[int, tuple[str, str, str]]:
+    options.part = part
     try:
-        engine, session = open_session(chosen, "repair")
-        engine.write(session, chosen.output / Path(part).stem, progress=progress_of(chosen))
+        engine, session = open_session(options, "repair")
+        engine.write(session, options.output / Path(part).stem, progress=progress_of(options))
     except TrunnionError as reason:
         print(f"trunnion: {reason}", file=sys.stderr)
         return 2, ("refused", "", "")

@@ -32,18 +32,18 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Write the programs; a failed proof writes them as REJECTED."""
     from trunnion.pipeline.writing import checked_name, write_programs
 
-    check_output(chosen.output)
-    if chosen.name:
-        checked_name(chosen.name)
-    _, session = open_session(chosen, "repair")
+    check_output(options.output)
+    if options.name:
+        checked_name(options.name)
+    _, session = open_session(options, "repair")
     files = write_programs(
-        session, chosen.output, name=chosen.name, date=chosen.date, progress=progress_of(chosen)
+        session, options.output, name=options.name, date=options.date, progress=progress_of(options)
     )
-    if chosen.json:
+    if options.json:
         show_json(
             {
                 "files": list(files),
@@ -52,5 +52,5 @@ def run(chosen: argparse.Namespace) -> int:
         )
     else:
         print("\n".join(files))
-    show_findings(chosen, session.findings())
+    show_findings(options, session.findings())
     return verdict_code(session)

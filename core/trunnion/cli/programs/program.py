@@ -35,25 +35,25 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Run the whole line and write its files."""
     from trunnion.pipeline.writing import checked_name
 
     began = time.perf_counter()
-    check_output(chosen.output)
-    if chosen.name:
-        checked_name(chosen.name)
-    engine, session = open_session(chosen, "repair")
+    check_output(options.output)
+    if options.name:
+        checked_name(options.name)
+    engine, session = open_session(options, "repair")
     files = engine.write(
-        session, chosen.output, name=chosen.name, date=chosen.date, progress=progress_of(chosen)
+        session, options.output, name=options.name, date=options.date, progress=progress_of(options)
     )
     seconds = {name: record.seconds for name, record in session.records.items()} | {
         "all": time.perf_counter() - began
     }
-    if chosen.json:
+    if options.json:
         show_json(proof_dict(session, files, seconds))
     else:
         print(proof_text(session))
-        print(f"{len(files)} files in {chosen.output}, {seconds['all']:.1f} s")
-    show_findings(chosen, session.findings())
+        print(f"{len(files)} files in {options.output}, {seconds['all']:.1f} s")
+    show_findings(options, session.findings())
     return verdict_code(session)

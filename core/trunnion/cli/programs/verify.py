@@ -42,38 +42,38 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the verdict."""
     from trunnion.pipeline.proof import fine_faces
 
-    faces = fine_faces.faces_named(chosen.fine) if chosen.fine else ()
-    if not 0.001 <= chosen.fine_spacing <= 10.0:
-        raise BadCall(f"--fine-spacing {chosen.fine_spacing:g}: it must be from 0.001 to 10 mm")
-    if chosen.nc:
+    faces = fine_faces.faces_named(options.fine) if options.fine else ()
+    if not 0.001 <= options.fine_spacing <= 10.0:
+        raise BadCall(f"--fine-spacing {options.fine_spacing:g}: it must be from 0.001 to 10 mm")
+    if options.nc:
         from trunnion.pipeline.proof.external_nc import text_of
 
-        for file in chosen.nc:
+        for file in options.nc:
             text_of(file)
-    engine, session = open_session(chosen, "toolpath" if chosen.nc else "verify")
-    if chosen.nc:
+    engine, session = open_session(options, "toolpath" if options.nc else "verify")
+    if options.nc:
         from trunnion.pipeline.proof.external_nc import verify_texts
 
-        session = verify_texts(engine, session, chosen.nc, progress_of(chosen))
+        session = verify_texts(engine, session, options.nc, progress_of(options))
     figures = (
-        fine_faces.measure_fine(engine, session, faces, chosen.fine_spacing, progress_of(chosen))
+        fine_faces.measure_fine(engine, session, faces, options.fine_spacing, progress_of(options))
         if faces
         else None
     )
-    if chosen.json:
-        told = proof_dict(
+    if options.json:
+        verdict = proof_dict(
             session,
-            tuple(str(f) for f in chosen.nc),
+            tuple(str(f) for f in options.nc),
             {n: r.seconds for n, r in session.records.items()},
         )
-        show_json(told | ({"fine": fine_faces.fine_dict(figures)} if figures else {}))
+        show_json(verdict | ({"fine": fine_faces.fine_dict(figures)} if figures else {}))
     else:
         print(proof_text(session))
         if figures:
             print(fine_faces.fine_text(figures))
-    show_findings(chosen, session.findings())
+    show_findings(options, session.findings())
     return verdict_code(session)

@@ -35,18 +35,18 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run(options: argparse.Namespace) -> int:
     """Print the table of errors and the boundary's own error."""
     from trunnion.recognize.surface.accuracy import COUNTS, size_errors
 
-    counts = _counts(chosen.points) or COUNTS
-    engine, session = open_session(chosen, None)
+    counts = _counts(options.points) or COUNTS
+    engine, session = open_session(options, None)
     assert session.part is not None
     part = engine.context_of(session).part
-    rows = size_errors(part, part.tags, counts, progress_of(chosen))
+    rows = size_errors(part, part.tags, counts, progress_of(options))
     errors = part.boundary_error()
     worst = max(errors, key=lambda tag: errors[tag])
-    if chosen.json:
+    if options.json:
         show_json(
             {
                 "part": session.part.name,
@@ -69,7 +69,7 @@ def run(chosen: argparse.Namespace) -> int:
         ]
         print(table(lines, right=(0, 1, 2, 3, 4)))
         print(f"boundary curves are within {errors[worst]:.2g} mm of their surfaces (face {worst})")
-    show_findings(chosen, session.part.findings)
+    show_findings(options, session.part.findings)
     return exit_code(session.part.findings)
 
 

@@ -59,9 +59,9 @@ def _distances(
         after_start = turned * (ax * qy - ay * qx) >= 0.0
         before_end = turned * (qx * by - qy * bx) >= 0.0
         wide = np.abs(sweep[arcs]) > np.pi
-        beside = np.where(wide, after_start | before_end, after_start & before_end)
+        in_sector = np.where(wide, after_start | before_end, after_start & before_end)
         to_end = np.minimum(_length(qx - ax, qy - ay), _length(qx - bx, qy - by))
-        away[:, arcs] = np.where(beside, np.abs(_length(qx, qy) - radius[arcs]), to_end)
+        away[:, arcs] = np.where(in_sector, np.abs(_length(qx, qy) - radius[arcs]), to_end)
     return away
 
 

@@ -15,7 +15,7 @@ from trunnion.geometry.arrays import Floats, Ints
 # Any layout, read-only or not: without it every mixture of them that comes along is compiled anew, for a second each.
 _PAIRS = types.Array(types.float64, 2, "A", readonly=True)
 _NUMBERS = types.Array(types.float64, 1, "A", readonly=True)
-_ASKED = (_PAIRS, _PAIRS, _PAIRS, _PAIRS, _NUMBERS, _NUMBERS)
+_SIGNATURE = (_PAIRS, _PAIRS, _PAIRS, _PAIRS, _NUMBERS, _NUMBERS)
 
 
 @njit(cache=True, nogil=True)
@@ -25,7 +25,7 @@ def _length(x: float, y: float) -> float:
     return math.sqrt(x * x + y * y)
 
 
-@njit(types.Tuple((types.float64[::1], int64[::1]))(*_ASKED), cache=True, nogil=True)
+@njit(types.Tuple((types.float64[::1], int64[::1]))(*_SIGNATURE), cache=True, nogil=True)
 def nearest_segment(
     points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
 ) -> tuple[Floats, Ints]:
@@ -55,12 +55,12 @@ def nearest_segment(
                 turned = 1.0 if sweep[i] > 0.0 else -1.0
                 after_start = turned * (ax * qy - ay * qx) >= 0.0
                 before_end = turned * (qx * by - qy * bx) >= 0.0
-                beside = (
+                in_sector = (
                     after_start or before_end
                     if abs(sweep[i]) > math.pi
                     else after_start and before_end
                 )
-                if beside:
+                if in_sector:
                     away = abs(_length(qx, qy) - radius[i])
                 else:
                     away = min(_length(qx - ax, qy - ay), _length(qx - bx, qy - by))
@@ -70,7 +70,7 @@ def nearest_segment(
     return best, row
 
 
-@njit(int64[::1](*_ASKED), cache=True, nogil=True)
+@njit(int64[::1](*_SIGNATURE), cache=True, nogil=True)
 def winding_numbers(
     points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
 ) -> Ints:

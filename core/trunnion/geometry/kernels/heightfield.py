@@ -138,8 +138,10 @@ def zmap_highest_reference(
     heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float
 ) -> float:
     """Plain numpy form of `zmap_highest`."""
-    touched = _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
-    return float(heights[touched].max(initial=-np.inf))
+    is_covered = (
+        _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
+    )
+    return float(heights[is_covered].max(initial=-np.inf))
 
 
 def _centres(heights: Floats, x0: float, y0: float, cell: float) -> Floats:
@@ -150,11 +152,11 @@ def _centres(heights: Floats, x0: float, y0: float, cell: float) -> Floats:
 
 def _distance(points: Floats, start: Floats, end: Floats) -> Floats:
     """Return the plan distances of points (..., 2) to a segment."""
-    way = end - start
-    square = float(way @ way)
+    direction = end - start
+    square = float(direction @ direction)
     t = (
-        np.clip(((points - start) @ way) / square, 0.0, 1.0)
+        np.clip(((points - start) @ direction) / square, 0.0, 1.0)
         if square > 0.0
         else np.zeros(points.shape[:-1])
     )
-    return np.linalg.norm(points - start - t[..., None] * way, axis=-1)
+    return np.linalg.norm(points - start - t[..., None] * direction, axis=-1)

@@ -17,13 +17,13 @@ from trunnion.geometry.arrays import Floats, Ints
 OUT, IN, NEAR = 0, 1, 2
 
 
-def points_in_polygon(places: Floats, pieces: Floats, near: float) -> Ints:
-    """Return OUT, IN or NEAR (k,) for places (k, 2) and chords (s, 4), from x, y to x, y, that close.
+def points_in_polygon(positions: Floats, pieces: Floats, near: float) -> Ints:
+    """Return OUT, IN or NEAR (k,) for positions (k, 2) and chords (s, 4), from x, y to x, y, that close.
 
     Inside, a ray towards +x crosses an odd number of chords.
     """
-    out = np.empty(len(places), np.int64)
-    for k, (x, y) in enumerate(places):
+    out = np.empty(len(positions), np.int64)
+    for k, (x, y) in enumerate(positions):
         ax, ay, bx, by = pieces.T
         square = (bx - ax) ** 2 + (by - ay) ** 2
         share = np.divide(
@@ -38,15 +38,15 @@ def points_in_polygon(places: Floats, pieces: Floats, near: float) -> Ints:
             continue
         # Chords whose ends lie on different sides of the ray, and those of them that cross it to
         # the right.
-        beside = (ay > y) != (by > y)
-        at = ax[beside] + (y - ay[beside]) / (by - ay)[beside] * (bx - ax)[beside]
+        straddles = (ay > y) != (by > y)
+        at = ax[straddles] + (y - ay[straddles]) / (by - ay)[straddles] * (bx - ax)[straddles]
         out[k] = IN if (at > x).sum() % 2 else OUT
     return out
 
 
 @njit(cache=True, nogil=True)
 def points_in_polygon_loop(
-    places: Floats,
+    positions: Floats,
     pieces: Floats,
     near: float,
     low: float,
@@ -58,10 +58,10 @@ def points_in_polygon_loop(
     """Fill out (k,) with what `points_in_polygon` returns.
 
     Strip i, from `low + i pitch` in y, lists in rows, from start[i] on, the chords that come within
-    `near` of it; places beyond all strips are OUT.
+    `near` of it; positions beyond all strips are OUT.
     """
-    for n in range(len(places)):
-        x, y = places[n, 0], places[n, 1]
+    for n in range(len(positions)):
+        x, y = positions[n, 0], positions[n, 1]
         out[n] = OUT
         strip = int(math.floor((y - low) / pitch))
         if strip < 0 or strip >= len(start) - 1:
@@ -74,7 +74,7 @@ def points_in_polygon_loop(
                 pieces[rows[c], 3],
             )
             # Parity of crossings towards +x; a chord is listed in every strip it passes, and this
-            # place reads one.
+            # position reads one.
             if (ay > y) != (by > y) and ax + (y - ay) / (by - ay) * (bx - ax) > x:
                 out[n] = IN - out[n]
             # Only chords whose box is within `near` can be too near.

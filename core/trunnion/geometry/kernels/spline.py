@@ -3,8 +3,8 @@ basis functions. Plain reference.
 
 Cox and de Boor's recursion (Piegl and Tiller, The NURBS Book, 1997, 2.2). A surface is two rows of
 knots, each as often as it counts, two degrees, and poles (m, n, 4) with weights: x w, y w, z w, w.
-What comes back for a place (u, v) is (6, 3): the point S, its derivatives S_u, S_v, S_uu, S_uv,
-S_vv. A place beyond the knots is on the continued first or last piece.
+What comes back for a position (u, v) is (6, 3): the point S, its derivatives S_u, S_v, S_uu, S_uv,
+S_vv. A position beyond the knots is on the continued first or last piece.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from trunnion.geometry.arrays import Floats
 
 
 def evaluate_surface(
-    places: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats
+    uv: Floats, knots_u: Floats, knots_v: Floats, degree_u: int, degree_v: int, poles: Floats
 ) -> Floats:
-    """Return points and derivatives (k, 6, 3) at places (k, 2), in mm and mm per unit of the
+    """Return points and derivatives (k, 6, 3) at uv (k, 2), in mm and mm per unit of the
     parameters.
 
     With A = w S the quotient rule gives S_u = (A_u - w_u S) / w, S_uu = (A_uu - 2 w_u S_u - w_uu S)
     / w, S_uv = (A_uv - w_u S_v - w_v S_u - w_uv S) / w (The NURBS Book, 4.5).
     """
-    out = np.empty((len(places), 6, 3))
-    for k, (u, v) in enumerate(places):
+    out = np.empty((len(uv), 6, 3))
+    for k, (u, v) in enumerate(uv):
         along = [_basis_functions(knots_u, degree_u, u, order) for order in range(3)]
         across = [_basis_functions(knots_v, degree_v, v, order) for order in range(3)]
         # Tensor product in homogeneous coordinates: A and w with the derivatives that are asked

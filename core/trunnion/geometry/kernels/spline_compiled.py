@@ -1,5 +1,5 @@
 """The loop of `kernels.spline` compiled: only the degree + 1 basis functions that are not 0 at a
-place, built up degree by degree (Cox, 1972; de Boor, 1972)."""
+position, built up degree by degree (Cox, 1972; de Boor, 1972)."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _basis_functions(
 def evaluate_surface_loop(
     first: int,
     last: int,
-    places: Floats,
+    uv: Floats,
     knots_u: Floats,
     knots_v: Floats,
     degree_u: int,
@@ -75,16 +75,16 @@ def evaluate_surface_loop(
     poles: Floats,
     out: Floats,
 ) -> None:
-    """Fill out[first:last] (k, 6, 3) with points and derivatives at places (k, 2); see
+    """Fill out[first:last] (k, 6, 3) with points and derivatives at uv (k, 2); see
     `kernels.spline.evaluate_surface`."""
     along, across = np.zeros((3, degree_u + 1)), np.zeros((3, degree_v + 1))
-    room = np.zeros((3, max(degree_u, degree_v) + 1))
+    work = np.zeros((3, max(degree_u, degree_v) + 1))
     p = np.zeros((6, 4))
     for n in range(first, last):
-        u, v = places[n, 0], places[n, 1]
+        u, v = uv[n, 0], uv[n, 1]
         su, sv = _knot_span(knots_u, degree_u, u), _knot_span(knots_v, degree_v, v)
-        _basis_functions(knots_u, degree_u, u, su, room, along)
-        _basis_functions(knots_v, degree_v, v, sv, room, across)
+        _basis_functions(knots_u, degree_u, u, su, work, along)
+        _basis_functions(knots_v, degree_v, v, sv, work, across)
         p[:] = 0.0
         # Tensor product: sums over v first, then over u, of the homogeneous coordinates A and w and
         # their derivatives.

@@ -15,7 +15,7 @@ import shapely
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.plane.curve import FULL, Segments, chord_counts
-from trunnion.geometry.plane.intersections import CLOSE, crossings, meeting_boxes
+from trunnion.geometry.plane.intersections import CLOSE, crossings, overlapping_boxes
 
 GRIDS = np.array([(0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5)])
 """How far four grids are shifted, in cells: two points nearer than half a cell share a cell of at least one of them."""
@@ -44,7 +44,7 @@ def chorded(
     m = len(source)
     ends = pulled_together(np.concatenate([source.start, source.end]))
     start, end = ends[:m], ends[m:]
-    pairs = meeting_boxes(source)
+    pairs = overlapping_boxes(source)
     centre, radius, carrier = _shared_carriers(start, end, source, pairs)
     joined = Segments(start, end, centre, radius, source.sweep, source.length)
     bridges = np.zeros(m, dtype=bool) if is_bridge is None else is_bridge
@@ -78,7 +78,7 @@ def pulled_together(points: Floats) -> Floats:
         points[:, 0] + 1j * points[:, 1], return_index=True, return_inverse=True
     )
     apart = points[first]
-    free = _crowded(apart)
+    free = _dense(apart)
     free = free[np.argsort(first[free])]
     owner = np.arange(len(apart))
     while len(free) > 1:
@@ -88,7 +88,7 @@ def pulled_together(points: Floats) -> Floats:
     return apart[owner[back]]
 
 
-def _crowded(points: Floats) -> Ints:
+def _dense(points: Floats) -> Ints:
     """Return the rows of points that may have another one within the coincidence tolerance: they share a cell of one of four grids."""
     cell = (points - points.min(axis=0)) / (4.0 * CLOSE)
     x, y = np.floor(cell + GRIDS[:, None]).astype(np.int64).transpose(2, 0, 1)
@@ -97,9 +97,9 @@ def _crowded(points: Floats) -> Ints:
     order = np.argsort(number, axis=1)
     number = np.take_along_axis(number, order, axis=1)
     grid, same = np.nonzero(number[:, 1:] == number[:, :-1])
-    crowded = np.zeros(len(points), dtype=bool)
-    crowded[order[grid, same]] = crowded[order[grid, same + 1]] = True
-    return np.flatnonzero(crowded)
+    dense = np.zeros(len(points), dtype=bool)
+    dense[order[grid, same]] = dense[order[grid, same + 1]] = True
+    return np.flatnonzero(dense)
 
 
 def _shared_carriers(

@@ -16,7 +16,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.plane.chords import Chords
 from trunnion.geometry.plane.curve import FULL, Curve, Segments, turn
-from trunnion.geometry.plane.intersections import CLOSE, meeting
+from trunnion.geometry.plane.intersections import CLOSE, intersection
 
 
 def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, list[Curve]]]:
@@ -32,7 +32,7 @@ def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, li
     rings, owner = shapely.get_rings(polygons, return_index=True)
     coords, ring = shapely.get_coordinates(rings, return_index=True)
     edges = _Edges(coords, ring, chords)
-    answer: list[tuple[Curve, list[Curve]]] = []
+    found_curves: list[tuple[Curve, list[Curve]]] = []
     previous = -1
     outer_kept = False
     for n, piece in enumerate(owner):
@@ -41,10 +41,10 @@ def restored(geometry: shapely.Geometry, chords: Chords) -> list[tuple[Curve, li
         if is_outer:
             outer_kept = curve is not None
             if curve is not None:
-                answer.append((curve if curve.area > 0.0 else curve.reversed(), []))
+                found_curves.append((curve if curve.area > 0.0 else curve.reversed(), []))
         elif curve is not None and outer_kept:
-            answer[-1][1].append(curve if curve.area < 0.0 else curve.reversed())
-    return answer
+            found_curves[-1][1].append(curve if curve.area < 0.0 else curve.reversed())
+    return found_curves
 
 
 class _Edges:
@@ -56,7 +56,7 @@ class _Edges:
         bounds = np.flatnonzero(np.diff(ring)) + 1
         self.begin = np.concatenate([[0], bounds])
         self.stop = np.concatenate([bounds, [len(coords)]])
-        table, place = np.unique(
+        table, index = np.unique(
             chords.points[:, 0] + 1j * chords.points[:, 1], return_inverse=True
         )
         z = coords[:, 0] + 1j * coords[:, 1]
@@ -70,15 +70,17 @@ class _Edges:
         is_edge = np.ones(len(coords), dtype=bool)
         is_edge[self.stop - 1] = False
         edge = np.flatnonzero(is_edge)
-        known = np.minimum(place[head], place[head + 1]) * len(table) + np.maximum(
-            place[head], place[head + 1]
+        known = np.minimum(index[head], index[head + 1]) * len(table) + np.maximum(
+            index[head], index[head + 1]
         )
         # A bridge that lies on a real chord must not hide it.
         order = np.lexsort([chords.is_bridge[rows[head]], known])
         known = known[order]
-        asked = np.minimum(at[edge], at[edge + 1]) * len(table) + np.maximum(at[edge], at[edge + 1])
-        slot = np.minimum(np.searchsorted(known, asked), len(known) - 1)
-        hit = (known[slot] == asked) & self.is_old[edge] & self.is_old[edge + 1]
+        queried = np.minimum(at[edge], at[edge + 1]) * len(table) + np.maximum(
+            at[edge], at[edge + 1]
+        )
+        slot = np.minimum(np.searchsorted(known, queried), len(known) - 1)
+        hit = (known[slot] == queried) & self.is_old[edge] & self.is_old[edge + 1]
         chord = np.full(len(edge), -1)
         chord[hit] = head[order[slot[hit]]]
         if not hit.all():
@@ -175,7 +177,7 @@ def _closed_curve(chords: Chords, runs: list[_Run]) -> Curve | None:
     starts = [run.start for run in runs]
     while len(runs) > 1:
         starts = [
-            run.start if run.is_exact else meeting(source, before.row, run.row, run.start)
+            run.start if run.is_exact else intersection(source, before.row, run.row, run.start)
             for before, run in zip([runs[-1], *runs[:-1]], runs, strict=True)
         ]
         turned_back = _turned_back(source, runs, starts)

@@ -1,4 +1,4 @@
-"""Where lines and arcs meet: all crossings of many segments at once, and the one meeting of two carriers near a place."""
+"""Where lines and arcs meet: all crossings of many segments at once, and the one meeting of two carriers near a position."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def crossings(s: Segments, pairs: tuple[Ints, Ints] | None = None) -> tuple[Ints
     Every meeting is given for both, with the same point. The ends of one that lie inside the other are among them. `pairs` are
     the pairs of segments that can meet, when they are known.
     """
-    i, j = meeting_boxes(s) if pairs is None else pairs
+    i, j = overlapping_boxes(s) if pairs is None else pairs
     line = s.sweep == 0.0
     rows, points = [], []
     for kind, solve in (
@@ -38,8 +38,11 @@ def crossings(s: Segments, pairs: tuple[Ints, Ints] | None = None) -> tuple[Ints
         np.concatenate([i, i, j, j]),
         np.concatenate([s.start[j], s.end[j], s.start[i], s.end[i]]),
     )
-    touches = _off_carrier(s, row, point) <= CLOSE
-    row, point = np.concatenate([*rows, row[touches]]), np.concatenate([*points, point[touches]])
+    on_carrier = _off_carrier(s, row, point) <= CLOSE
+    row, point = (
+        np.concatenate([*rows, row[on_carrier]]),
+        np.concatenate([*points, point[on_carrier]]),
+    )
     key = share_on(s, row, point)
     real = ~np.isnan(key)
     # A meeting is one only when it lies inside both.
@@ -51,7 +54,7 @@ def crossings(s: Segments, pairs: tuple[Ints, Ints] | None = None) -> tuple[Ints
     return row[real], key[real], point[real]
 
 
-def meeting_boxes(s: Segments) -> tuple[Ints, Ints]:
+def overlapping_boxes(s: Segments) -> tuple[Ints, Ints]:
     """Return the pairs of segments, the smaller row first, whose boxes come within the coincidence tolerance."""
     low, high = segment_boxes(s)
     low = low - 2.0 * CLOSE
@@ -75,11 +78,11 @@ def _off_carrier(s: Segments, rows: Ints, points: Floats) -> Floats:
 
 def share_on(s: Segments, rows: Ints, points: Floats) -> Floats:
     """Return the shares (k,) of the length at which points (k, 2) lie inside segments `rows`; NaN at the ends and beyond."""
-    place = np.full(len(rows), np.nan)
+    position = np.full(len(rows), np.nan)
     line = s.sweep[rows] == 0.0
     a = rows[line]
     along = (s.end[a] - s.start[a]) / np.maximum(s.length[a], np.finfo(float).tiny)[:, None]
-    place[line] = ((points[line] - s.start[a]) * along).sum(axis=1)
+    position[line] = ((points[line] - s.start[a]) * along).sum(axis=1)
     a = rows[~line]
     if len(a):
         ray, q = s.start[a] - s.centre[a], points[~line] - s.centre[a]
@@ -88,11 +91,11 @@ def share_on(s: Segments, rows: Ints, points: Floats) -> Floats:
             * np.arctan2(ray[:, 0] * q[:, 1] - ray[:, 1] * q[:, 0], (ray * q).sum(axis=1))
             % FULL
         )
-        place[~line] = angle * s.radius[a]
+        position[~line] = angle * s.radius[a]
     length = s.length[rows]
     with np.errstate(invalid="ignore"):
-        place[(place <= CLOSE) | (place >= length - CLOSE)] = np.nan
-        return place / length
+        position[(position <= CLOSE) | (position >= length - CLOSE)] = np.nan
+        return position / length
 
 
 def _lines_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:
@@ -134,7 +137,7 @@ def _circles_meet(s: Segments, a: Ints, b: Ints) -> list[Floats]:
     return [middle + half * across, middle - half * across]
 
 
-def meeting(source: Segments, a: int, b: int, near: Floats) -> Floats:
+def intersection(source: Segments, a: int, b: int, near: Floats) -> Floats:
     """Return the point where the carriers of two segments meet, the one nearest to a point.
 
     Carriers that only nearly touch meet where they are closest; parallel lines meet at the given point's foot on the first.

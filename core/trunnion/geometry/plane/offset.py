@@ -180,11 +180,11 @@ def cut_at_crossings(s: Segments) -> tuple[Ints, Floats, Floats]:
     row, share, _ = crossings(s)
     m = len(s)
     row = np.concatenate([np.arange(m), np.arange(m), row])
-    place = np.concatenate([np.zeros(m), s.length, share * s.length[row[2 * m :]]])
-    order = np.lexsort([place, row])
-    row, place = row[order], place[order]
-    real = (row[1:] == row[:-1]) & (place[1:] - place[:-1] > CLOSE)
-    return row[:-1][real], place[:-1][real], place[1:][real]
+    position = np.concatenate([np.zeros(m), s.length, share * s.length[row[2 * m :]]])
+    order = np.lexsort([position, row])
+    row, position = row[order], position[order]
+    real = (row[1:] == row[:-1]) & (position[1:] - position[:-1] > CLOSE)
+    return row[:-1][real], position[:-1][real], position[1:][real]
 
 
 def _strung(s: Segments, rows: Ints, low: Floats, high: Floats) -> list[Curve]:

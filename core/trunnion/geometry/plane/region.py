@@ -25,7 +25,7 @@ from trunnion.geometry.plane.curve import (
 )
 from trunnion.geometry.plane.offset import grown
 
-KEPT_ANSWERS = 4096
+KEPT_RESULTS = 4096
 """Results of offsets and of overlays that are kept, of some kB each: a large panel needs fewer in one step."""
 
 
@@ -174,14 +174,14 @@ class Region:
         """Return the area of this region that isn't of the other one."""
         if not self or not other:
             return self
-        taken = _beside(other, *self.box())
+        taken = _near_box(other, *self.box())
         return overlay(self, taken, shapely.difference) if taken else self
 
     def intersect(self, other: Region) -> Region:
         """Return the area of both regions."""
         if not self or not other:
             return EMPTY_REGION
-        one, two = _beside(self, *other.box()), _beside(other, *self.box())
+        one, two = _near_box(self, *other.box()), _near_box(other, *self.box())
         return overlay(one, two, shapely.intersection) if one and two else EMPTY_REGION
 
     def holes_filled(self) -> Region:
@@ -225,8 +225,8 @@ class Region:
 EMPTY_REGION = Region()
 """The region without any area."""
 
-_OFFSETS: Cache[Region] = Cache(KEPT_ANSWERS)
-_OVERLAYS: Cache[Region] = Cache(KEPT_ANSWERS)
+_OFFSETS: Cache[Region] = Cache(KEPT_RESULTS)
+_OVERLAYS: Cache[Region] = Cache(KEPT_RESULTS)
 
 
 def union_all(regions: Sequence[Region]) -> Region:
@@ -273,7 +273,7 @@ def _opened_into_chords(regions: Sequence[Region]) -> tuple[Chords, list[shapely
     return chords, areas
 
 
-def _beside(region: Region, low: Floats, high: Floats) -> Region:
+def _near_box(region: Region, low: Floats, high: Floats) -> Region:
     """Return a region without the pieces and islands that lie wholly outside a box: queries inside the box don't depend on them."""
 
     def near(curve: Curve) -> bool:

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import factorized
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels.shortest_paths import fast_marching_compiled as kernel
 from trunnion.geometry.sheet.sheet import Sheet
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 POWERS = (2.0, 3.0, 4.0, 4.0, 6.0, 6.0, 6.0)
 """Powers of the slope, one after the other: each begins where the one before ended."""
@@ -99,7 +99,7 @@ def beyond(sheet: Sheet) -> Ints:
     return np.where(key[order][at] == other, order[at], -1).reshape(-1, 3)
 
 
-def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = QUIET) -> Floats:
+def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = NO_PROGRESS) -> Floats:
     """Return the field (v,) that goes from 0 at some points to 1 at others in steps as even as the sheet allows."""
     n = len(metric.sheet.points)
     field, fixed = np.zeros(n), np.zeros(n, bool)
@@ -127,7 +127,7 @@ def turns_about(metric: Metric, first: Ints, second: Ints) -> tuple[Floats, Ints
     `first` and `second`: the rims' points. Growing goes against the way of the first rim, anticlockwise seen from outside of its sheet.
     """
     sheet = metric.sheet
-    cut = _way_between(sheet, first, second)
+    cut = _path_between(sheet, first, second)
     turns = _left_of(sheet, cut)
     matrix = metric.stiffness(np.ones(len(sheet.triangles)))
     cot, _ = metric._cotangents()
@@ -141,7 +141,7 @@ def turns_about(metric: Metric, first: Ints, second: Ints) -> tuple[Floats, Ints
     return field, turns
 
 
-def _way_between(sheet: Sheet, first: Ints, second: Ints) -> list[int]:
+def _path_between(sheet: Sheet, first: Ints, second: Ints) -> list[int]:
     """Return the points of a shortest way over edges from one rim to another."""
     ends, _ = sheet.edges()
     size = np.linalg.norm(sheet.points[ends[:, 0]] - sheet.points[ends[:, 1]], axis=1)
@@ -149,19 +149,19 @@ def _way_between(sheet: Sheet, first: Ints, second: Ints) -> list[int]:
     away, before, _ = dijkstra(
         graph, directed=False, indices=first, min_only=True, return_predecessors=True
     )
-    way = [int(second[np.argmin(away[second])])]
-    while before[way[-1]] >= 0:
-        way.append(int(before[way[-1]]))
-    return way[::-1]
+    path = [int(second[np.argmin(away[second])])]
+    while before[path[-1]] >= 0:
+        path.append(int(before[path[-1]]))
+    return path[::-1]
 
 
-def _left_of(sheet: Sheet, way: list[int]) -> Ints:
+def _left_of(sheet: Sheet, path: list[int]) -> Ints:
     """Return 1 for the corners (t, 3) on a way from rim to rim of the triangles on its left, 0 for all others."""
     turns, across = np.zeros(sheet.triangles.shape, np.int64), beyond(sheet)
-    steps = set(pairwise(way))
-    on_way = np.isin(sheet.triangles, way)
-    touching = {v: np.flatnonzero((sheet.triangles == v).any(axis=1)).tolist() for v in way}
-    for v in way:
+    steps = set(pairwise(path))
+    on_path = np.isin(sheet.triangles, path)
+    touching = {v: np.flatnonzero((sheet.triangles == v).any(axis=1)).tolist() for v in path}
+    for v in path:
         # Around a point, what hangs together with a triangle on the left without crossing the way is on the left.
         mine, left = touching[v], set()
         sides = {
@@ -186,5 +186,5 @@ def _left_of(sheet: Sheet, way: list[int]) -> Ints:
                 ):
                     todo.append(other)
         rows = np.array(sorted(left), dtype=np.int64)
-        turns[rows] |= (sheet.triangles[rows] == v) & on_way[rows]
+        turns[rows] |= (sheet.triangles[rows] == v) & on_path[rows]
     return turns

@@ -18,7 +18,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.fields import Metric
 from trunnion.geometry.sheet.sheet import Sheet
 
-MEETING = math.cos(math.radians(36.0))
+LEAST_ANGLE = math.cos(math.radians(36.0))
 """Cosine of the least angle between two paths that meet: level lines less sharp than 144 degrees are five hundredths farther apart at
 their corners than between."""
 
@@ -46,7 +46,7 @@ def ridged(metric: Metric, time: Floats, foot: Floats, gap: float) -> RidgedShee
     """
     sheet = metric.sheet
     ends, side = sheet.edges()
-    share, top, meets = _meeting(metric, ends, side, time, foot)
+    share, top, meets = _joined(metric, ends, side, time, foot)
     crossed = np.flatnonzero(meets)
     parted, number = sheet.parted(ends, side, crossed, share[crossed])
     time = np.concatenate([time, top[crossed]])
@@ -100,9 +100,9 @@ def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:
             partner[a], partner[b] = b, a
     ends = np.concatenate([line[[0, -1]] for line in open_lines])
     for tip in np.flatnonzero(partner < 0).tolist():
-        beside = [a + b - tip for a, b in pairs.tolist() if tip in (a, b) and a // 2 != b // 2]
-        if beside and ends[beside[0]] != ends[tip]:
-            line, node = open_lines[tip // 2], ends[beside[0]]
+        adjacent = [a + b - tip for a, b in pairs.tolist() if tip in (a, b) and a // 2 != b // 2]
+        if adjacent and ends[adjacent[0]] != ends[tip]:
+            line, node = open_lines[tip // 2], ends[adjacent[0]]
             open_lines[tip // 2] = np.append(line, node) if tip % 2 else np.insert(line, 0, node)
     made, used = [], np.zeros(len(open_lines), bool)
     for tip in [*np.flatnonzero(partner < 0).tolist(), *range(len(tips))]:
@@ -116,7 +116,7 @@ def _chained(points: Floats, lines: list[Ints], gap: float) -> list[Ints]:
     return [line for line in lines if line[0] == line[-1]] + made
 
 
-def _meeting(
+def _joined(
     metric: Metric, ends: Ints, side: Ints, time: Floats, foot: Floats
 ) -> tuple[Floats, Floats, Bools]:
     """Return where on each edge (e,) fronts from both ends meet, as a share of its path, when, and whether they do."""
@@ -127,7 +127,7 @@ def _meeting(
     edge, came = _unit(sheet.points[b] - sheet.points[a]), _unit(sheet.points - foot)
     forth, back = (came[a] * edge).sum(axis=1), -(came[b] * edge).sum(axis=1)
     meets = (
-        ((came[a] * came[b]).sum(axis=1) < MEETING)
+        ((came[a] * came[b]).sum(axis=1) < LEAST_ANGLE)
         & (forth + back > 0.0)
         & np.isfinite(time[ends]).all(axis=1)
     )
@@ -141,24 +141,24 @@ def _meeting(
 
 def _lines(pairs: Ints) -> list[Ints]:
     """Return the lines of nodes that pairs (p, 2) of them make, each up to where it ends or branches."""
-    beside: dict[int, list[int]] = {}
+    adjacent: dict[int, list[int]] = {}
     for a, b in pairs.tolist():
-        if b not in beside.setdefault(a, []):
-            beside[a].append(b)
-            beside.setdefault(b, []).append(a)
+        if b not in adjacent.setdefault(a, []):
+            adjacent[a].append(b)
+            adjacent.setdefault(b, []).append(a)
     used: set[tuple[int, int]] = set()
     lines = []
-    knots = [n for n in sorted(beside) if len(beside[n]) != 2]
-    for first in [*knots, *sorted(beside)]:
-        for second in beside[first]:
+    knots = [n for n in sorted(adjacent) if len(adjacent[n]) != 2]
+    for first in [*knots, *sorted(adjacent)]:
+        for second in adjacent[first]:
             line = [first]
             node = second
             while (line[-1], node) not in used:
                 used |= {(line[-1], node), (node, line[-1])}
                 line.append(node)
-                if len(beside[node]) != 2 or node == first:
+                if len(adjacent[node]) != 2 or node == first:
                     break
-                node = next(n for n in beside[node] if n != line[-2])
+                node = next(n for n in adjacent[node] if n != line[-2])
             if len(line) > 1:
                 lines.append(np.array(line))
     return lines

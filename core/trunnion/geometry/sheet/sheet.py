@@ -20,7 +20,7 @@ from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SMOOTH = np.cos(tolerance.SMOOTH_JOIN)
 MOST_TRIANGLES = 2_000_000
@@ -214,15 +214,17 @@ def between(
     a: Floats, a_normal: Floats, b: Floats, b_normal: Floats, share: Floats
 ) -> tuple[Floats, Floats]:
     """Return points and normals (k, 3) at shares (k,) of the cubic curves that run from a to b square to the normals of both."""
-    way, s = b - a, share[:, None]
-    out = way - (way * a_normal).sum(axis=1, keepdims=True) * a_normal
-    into = way - (way * b_normal).sum(axis=1, keepdims=True) * b_normal
-    point = a + s * way + s * (1.0 - s) * ((1.0 - s) * (out - way) - s * (into - way))
+    direction, s = b - a, share[:, None]
+    out = direction - (direction * a_normal).sum(axis=1, keepdims=True) * a_normal
+    into = direction - (direction * b_normal).sum(axis=1, keepdims=True) * b_normal
+    point = (
+        a + s * direction + s * (1.0 - s) * ((1.0 - s) * (out - direction) - s * (into - direction))
+    )
     return point, _unit((1.0 - s) * a_normal + s * b_normal)
 
 
 def split_finely(
-    sheet: Sheet, measure: Measure, longest: float, progress: Progress = QUIET
+    sheet: Sheet, measure: Measure, longest: float, progress: Progress = NO_PROGRESS
 ) -> Sheet:
     """Return the sheet with triangles split until hardly an edge measures more than `longest`.
 

@@ -18,11 +18,11 @@ from trunnion.geometry.kernels.cutter_contact.drop_bvh import (
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, A, C
 from trunnion.geometry.kernels.cutter_contact.push_cutter_compiled import push_cutter_loop
 from trunnion.geometry.lattice import Lattice, lattice_of
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 CHUNK = 2000
 """Points between two looks at cancel."""
-LINES, FIRST_ROOM = 20, 256
+LINES, FIRST_CAPACITY = 20, 256
 """Lines between two looks at cancel, and spans that each has room for at first."""
 FACETS_A_LEAF = 2
 """How many facets the last nodes of a tree hold, or up to twice as many."""
@@ -75,7 +75,11 @@ class DropSurface:
         return DropSurface(facets=facets, row=row, start=start, boxes=boxes, planes=(planes, own))
 
     def drop(
-        self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET
+        self,
+        points: Floats,
+        pieces: Floats,
+        lowest: float | Floats,
+        progress: Progress = NO_PROGRESS,
     ) -> Floats:
         """Return the height (n,) of a cutter's tip over plan points (n, 2) when it comes down and touches, at least `lowest`, a height for
         all or for each (n,).
@@ -83,10 +87,14 @@ class DropSurface:
         `pieces` (p, 6) is the cutter's lower side as `kernels/drop_cutter.py` describes it. Points that follow a
         path are quicker than loose ones.
         """
-        return self.touch(points, pieces, lowest, progress)[0]
+        return self.contacts(points, pieces, lowest, progress)[0]
 
-    def touch(
-        self, points: Floats, pieces: Floats, lowest: float | Floats, progress: Progress = QUIET
+    def contacts(
+        self,
+        points: Floats,
+        pieces: Floats,
+        lowest: float | Floats,
+        progress: Progress = NO_PROGRESS,
     ) -> tuple[Floats, Ints, Floats]:
         """Return what `drop` does, the triangle (n,) that is touched at each point, and where (n, 3).
 
@@ -116,19 +124,19 @@ class DropSurface:
         return out, np.where(facet >= 0, self.row[facet], -1), contact
 
     def push(
-        self, lines: Floats, pieces: Floats, progress: Progress = QUIET
+        self, lines: Floats, pieces: Floats, progress: Progress = NO_PROGRESS
     ) -> tuple[Ints, Floats]:
         """Return where the tip is blocked along lines (n, 2), each along x at a y and a z: start (n + 1,) into spans (k, 2) from x to x.
 
         The spans of a line are apart from each other and ascend. `pieces` as for `drop`.
         """
-        found, g, room = [], self._cells(), FIRST_ROOM
+        found, g, capacity = [], self._cells(), FIRST_CAPACITY
         lines = np.ascontiguousarray(lines, dtype=np.float64)
         for first in range(0, len(lines), LINES):
             progress.at(first / len(lines), "Pushing the cutter")
             last = min(first + LINES, len(lines))
             count = np.zeros(len(lines), np.int64)
-            spans = np.empty((last - first, room, 2))
+            spans = np.empty((last - first, capacity, 2))
             while not push_cutter_loop(
                 first,
                 last,
@@ -143,8 +151,8 @@ class DropSurface:
                 count,
                 spans,
             ):
-                room *= 2
-                spans = np.empty((last - first, room, 2))
+                capacity *= 2
+                spans = np.empty((last - first, capacity, 2))
             found += [_merged(spans[k, : count[first + k]]) for k in range(last - first)]
         return np.cumsum([0, *(len(f) for f in found)]), np.vstack([np.zeros((0, 2)), *found])
 

@@ -28,9 +28,9 @@ class SplineSurface:
         object.__setattr__(self, "knots_v", floats(self.knots_v, (None,), "spline knots along v"))
         object.__setattr__(self, "poles", floats(self.poles, (m, n, 4), "spline poles"))
 
-    def at(self, places: Floats) -> Floats:
-        """Return points and derivatives (k, 6, 3) at places (k, 2): point, by u, by v, by u twice, by both, by v twice."""
-        places = np.array(places, dtype=np.float64)
+    def at(self, uv: Floats) -> Floats:
+        """Return points and derivatives (k, 6, 3) at uv (k, 2): point, by u, by v, by u twice, by both, by v twice."""
+        uv = np.array(uv, dtype=np.float64)
         for axis, (knots, degree, period) in enumerate(
             (
                 (self.knots_u, self.degree_u, self.period[0]),
@@ -38,13 +38,13 @@ class SplineSurface:
             )
         ):
             if period:
-                low, high, t = knots[degree], knots[-degree - 1], places[:, axis]
-                places[:, axis] = np.where((t < low) | (t > high), low + np.mod(t - low, period), t)
-        out = np.empty((len(places), 6, 3))
+                low, high, t = knots[degree], knots[-degree - 1], uv[:, axis]
+                uv[:, axis] = np.where((t < low) | (t > high), low + np.mod(t - low, period), t)
+        out = np.empty((len(uv), 6, 3))
         evaluate_surface_loop(
             0,
-            len(places),
-            places,
+            len(uv),
+            uv,
             self.knots_u,
             self.knots_v,
             self.degree_u,

@@ -20,7 +20,7 @@ from trunnion.geometry.rays import Intervals
 
 S = TypeVar("S", covariant=True)
 FINER = 2
-"""Places looked at along a side of a cell when the highest material over it is sought, beside its edges'."""
+"""Positions looked at along a side of a cell when the highest material over it is sought, beside its edges'."""
 
 
 class Builder(Protocol[S]):
@@ -100,7 +100,8 @@ class BlankBase(ABC):
 
     @abstractmethod
     def sides(self, points: Floats, near: float, sag: float = 0.0) -> Bools:
-        """Say of points (n, 3) in its own frame in which of its s sides each lies within `near` mm (n, s); `sag` more on curved ones."""
+        """Return for points (n, 3) in its own frame in which of its s sides each lies within `near` mm (n, s); `sag` more on curved
+        ones."""
 
     @abstractmethod
     def shell(self) -> tuple[Floats, Ints]:
@@ -127,15 +128,15 @@ class BlankBase(ABC):
 
         Looked at in places all over each cell and taken higher by what a slope rises between two of them: on the side of material.
         """
-        places = [
+        positions = [
             c + np.arange(FINER * n + 1) * (cell / FINER)
             for c, n in zip(corner, shape, strict=True)
         ]
-        grid = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1).reshape(-1, 2)
+        grid = np.stack(np.meshgrid(*positions, indexing="ij"), axis=-1).reshape(-1, 2)
         start = np.column_stack([grid, np.zeros(len(grid))])
         direction = self.frame.local_direction(frame.z)
         seen = self.intervals(self.own(start, frame), _exact(direction)).tops(-np.inf)
-        seen = seen.reshape(len(places[0]), len(places[1])) + cell / FINER
+        seen = seen.reshape(len(positions[0]), len(positions[1])) + cell / FINER
         over = np.full(shape, -np.inf)
         for i in range(FINER + 1):
             for j in range(FINER + 1):

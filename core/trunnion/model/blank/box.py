@@ -89,8 +89,8 @@ class Box(BlankBase):
         away = self.frame.local_direction(frame.z)
         if np.abs(away).max() > 1.0 - tolerance.PARAMETRIC:
             return np.full(shape, top)
-        places = corner + (np.argwhere(np.ones(shape, dtype=bool)) + 0.5) * cell
-        start = self.own(np.column_stack([places, np.zeros(len(places))]), frame)
+        positions = corner + (np.argwhere(np.ones(shape, dtype=bool)) + 0.5) * cell
+        start = self.own(np.column_stack([positions, np.zeros(len(positions))]), frame)
         reach = GROWN * cell
         with np.errstate(divide="ignore", invalid="ignore"):
             ends = np.stack([(self.low - reach - start) / away, (self.high + reach - start) / away])

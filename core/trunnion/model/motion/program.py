@@ -13,7 +13,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.spindle import FeedMode, limited_turns
 from trunnion.model.tool import AnyTool, Tool, rotating
 
-STANDING = 0.5
+STOPPED = 0.5
 """1/min: a spindle at this speed or below stands: speeds are written in whole turns."""
 
 
@@ -40,9 +40,9 @@ class ProgramSection:
     feed_mode: FeedMode = FeedMode.MINUTE
 
     @property
-    def spindle_stands(self) -> bool:
+    def spindle_stopped(self) -> bool:
         """Whether the spindle does not turn."""
-        return self.spindle <= STANDING
+        return self.spindle <= STOPPED
 
     @property
     def cutter(self) -> Tool:

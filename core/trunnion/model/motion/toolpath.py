@@ -60,11 +60,11 @@ class Toolpath:
 
     position (n, 3) mm: the tip at the end of each block; block 0 is a rapid, its start is wherever the tool was.
     axis (n, 3) unit: the tool axis at the end of each block, from tip to spindle. motion (n,), mark (n,): `Motion`, `Mark`.
-    centre (n, 3): centre of an arc (its place along the axis doesn't matter), NaN otherwise. An arc turns less than a full turn unless it
-    ends beside its centre where it starts: then one full turn.
-    feed (n,) mm/min, 0 for rapids. dwell (n,) s that the tool stands at the end of each block, None where it never does. cycles: which rows
-    are drilling cycles; who knows none reads their motions. work_turns: the work turns about the setup's z and the tool stands still; its
-    point moves in the plane y = 0 with x its distance from the work's axis, and the axis is +y, about which arcs go.
+    centre (n, 3): centre of an arc (its position along the axis doesn't matter), NaN otherwise. An arc turns less than a full turn unless
+    it ends beside its centre where it starts: then one full turn. feed (n,) mm/min, 0 for rapids. dwell (n,) s that the tool stands at the
+    end of each block, None where it never does. cycles: which rows are drilling cycles; who knows none reads their motions. work_turns: the
+    work turns about the setup's z and the tool stands still; its point moves in the plane y = 0 with x its distance from the work's axis,
+    and the axis is +y, about which arcs go.
     """
 
     position: Floats

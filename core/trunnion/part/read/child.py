@@ -31,12 +31,12 @@ _MEGA = 1 << 20
 def run(request: ReadRequest, data: bytes, limits: ReadLimits, progress: Progress) -> bytes:
     """Return the bytes of the part (`Part.to_bytes`) that a fresh process read from a file's bytes, within limits."""
     with tempfile.TemporaryDirectory(prefix="trunnion-read-") as folder:
-        place = Path(folder)
-        (place / "part").write_bytes(data)
-        (place / "request.json").write_text(
+        directory = Path(folder)
+        (directory / "part").write_bytes(data)
+        (directory / "request.json").write_text(
             json.dumps({"request": asdict(request), "memory": limits.memory}), encoding="utf-8"
         )
-        with (place / "words").open("wb") as words:
+        with (directory / "words").open("wb") as words:
             # -P: nothing is imported from the folder that the program happens to be started in.
             child = subprocess.Popen(
                 [sys.executable, "-P", "-m", "trunnion.part.read.child", folder],
@@ -50,7 +50,7 @@ def run(request: ReadRequest, data: bytes, limits: ReadLimits, progress: Progres
             finally:
                 child.kill()
                 child.wait()
-        return _answer(child.returncode, place, request, limits)
+        return _response(child.returncode, directory, request, limits)
 
 
 def _wait(
@@ -85,13 +85,13 @@ def _load() -> None:
     flat.at(np.zeros((1, 2)))
 
 
-def _answer(code: int, place: Path, request: ReadRequest, limits: ReadLimits) -> bytes:
-    refusal = place / "refused"
-    if code == 0 and (place / "answer").is_file():
-        return (place / "answer").read_bytes()
+def _response(code: int, directory: Path, request: ReadRequest, limits: ReadLimits) -> bytes:
+    refusal = directory / "refused"
+    if code == 0 and (directory / "answer").is_file():
+        return (directory / "answer").read_bytes()
     if code == _REFUSED and refusal.is_file():
         raise BadInput(refusal.read_text(encoding="utf-8"))
-    last = (place / "words").read_bytes()[-4096:]
+    last = (directory / "words").read_bytes()[-4096:]
     if code == _NO_MEMORY or b"bad_alloc" in last or b"MemoryError" in last:
         raise OutOfMemory(
             f"{request.file}: reading it needs more than {limits.memory} MB of memory; raise the limit or split the part"
@@ -103,16 +103,16 @@ def _answer(code: int, place: Path, request: ReadRequest, limits: ReadLimits) ->
 
 def main(folder: str) -> int:
     """Read the part that a folder's request names and write the answer there; return the exit code."""
-    place = Path(folder)
-    told = json.loads((place / "request.json").read_text(encoding="utf-8"))
-    limit_memory(told["memory"])
+    directory = Path(folder)
+    order = json.loads((directory / "request.json").read_text(encoding="utf-8"))
+    limit_memory(order["memory"])
     try:
         from trunnion.part.read.transfer import read_file
 
-        part = read_file(place / "part", ReadRequest(**told["request"]))
-        (place / "answer").write_bytes(part.to_bytes())
+        part = read_file(directory / "part", ReadRequest(**order["request"]))
+        (directory / "answer").write_bytes(part.to_bytes())
     except TrunnionError as reason:
-        (place / "refused").write_text(str(reason), encoding="utf-8")
+        (directory / "refused").write_text(str(reason), encoding="utf-8")
         return _REFUSED
     except MemoryError:
         return _NO_MEMORY

@@ -11,7 +11,7 @@ from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.mesh import Mesh
 from trunnion.part.read.limits import ReadLimits
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 CHORD = 0.02
 """mm: how far triangles may be from a fixture's faces; clamps are not placed as exactly."""
@@ -26,7 +26,7 @@ _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
 def read_fixture(
-    path: str | Path, *, limits: ReadLimits | None = None, progress: Progress = QUIET
+    path: str | Path, *, limits: ReadLimits | None = None, progress: Progress = NO_PROGRESS
 ) -> Mesh:
     """Return the triangles of a fixture's file in its own coordinates, mm; all solids of a STEP or IGES file together.
 

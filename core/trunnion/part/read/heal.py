@@ -128,9 +128,9 @@ def _tags(shape: Shape, tagged: list[Shape], image: Image) -> tuple[int, ...]:
     found: dict[int, int] = {}
     for tag, face in enumerate(tagged, start=1):
         after = image(face)
-        place = 0 if after is None or after.IsNull() else index.FindIndex(after)
-        if place:
-            found[place] = tag
+        position = 0 if after is None or after.IsNull() else index.FindIndex(after)
+        if position:
+            found[position] = tag
     return tuple(found[n] for n in sorted(found)) if len(found) == index.Extent() else ()
 
 

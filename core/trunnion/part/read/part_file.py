@@ -12,7 +12,7 @@ from trunnion.findings import BadInput
 from trunnion.part.part import Part
 from trunnion.part.read.limits import ReadLimits
 from trunnion.part.read.text import check_iges, check_step, kind_of
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SUFFIXES = (".step", ".stp", ".stpz", ".igs", ".iges")
 _GZIP = b"\x1f\x8b"
@@ -24,7 +24,7 @@ def read_part(
     *,
     solid: int | None = None,
     limits: ReadLimits | None = None,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Part:
     """Return the part of a STEP, gzipped STEP or IGES file, recognised by its content.
 
@@ -43,7 +43,7 @@ def read_part_bytes(
     *,
     solid: int | None = None,
     limits: ReadLimits | None = None,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Part:
     """Return the part of a file's bytes, as `read_part` does; `name` and `suffix` are the file's."""
     file = name if name.endswith(suffix) else name + suffix

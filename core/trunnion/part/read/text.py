@@ -94,10 +94,14 @@ def check_iges(data: bytes, name: str) -> int:
             f"{name}: the IGES file is cut off (its T section is missing); export or copy it again"
         )
     for at, letter in zip((0, 8, 16, 24), counts, strict=True):
-        told = last[at + 1 : at + 8].strip()
-        if last[at : at + 1] == letter and told.isdigit() and int(told) != counts[letter]:
+        number_text = last[at + 1 : at + 8].strip()
+        if (
+            last[at : at + 1] == letter
+            and number_text.isdigit()
+            and int(number_text) != counts[letter]
+        ):
             raise BadInput(
-                f"{name}: section {letter.decode()} of the IGES file has {counts[letter]} of {int(told)} lines; copy it again"
+                f"{name}: section {letter.decode()} of the IGES file has {counts[letter]} of {int(number_text)} lines; copy it again"
             )
     numbers = b"".join(line[:64] for line in lines if line[IGES_COLUMNS : IGES_COLUMNS + 1] == b"P")
     wrong = re.search(rb"(?<=[,;])\s*[-+]?(?:NAN|INF(?:INITY)?)\s*(?=[,;])", numbers, re.IGNORECASE)

@@ -157,13 +157,13 @@ def _part(read: TransferResult, request: ReadRequest) -> Part:
         raise BadInput(
             f"{request.file}: no solid and no shell could be made of its {len(tagged)} faces; export the part as a solid"
         )
-    chosen = _chosen(bodies, request)
-    body = bodies[chosen - 1]
+    number = _body_number(bodies, request)
+    body = bodies[number - 1]
     notes = [
         *findings,
         *body.findings,
         *_count_findings(tagged, request),
-        *_other_solids(bodies, chosen, request),
+        *_other_solids(bodies, number, request),
     ]
     notes += _loose(bodies, len(tagged), request)
     if not body.is_closed:
@@ -183,7 +183,7 @@ def _part(read: TransferResult, request: ReadRequest) -> Part:
         unit=read.unit,
         n_faces=len(tagged),
         n_solids=len(bodies),
-        solid=chosen,
+        solid=number,
         is_closed=body.is_closed,
         area=body.area,
         volume=body.volume,
@@ -195,7 +195,7 @@ def _part(read: TransferResult, request: ReadRequest) -> Part:
     return Part(facts, body.shape, read.shape)
 
 
-def _chosen(bodies: list[Body], request: ReadRequest) -> int:
+def _body_number(bodies: list[Body], request: ReadRequest) -> int:
     if request.solid is None:
         return (
             max(range(len(bodies)), key=lambda n: (bodies[n].is_closed, *_size(bodies[n]), -n)) + 1
@@ -213,15 +213,15 @@ def _size(body: Body) -> tuple[float, float]:
     return float(f"{abs(body.volume):.9g}"), float(f"{body.area:.9g}")
 
 
-def _other_solids(bodies: list[Body], chosen: int, request: ReadRequest) -> list[Finding]:
+def _other_solids(bodies: list[Body], number: int, request: ReadRequest) -> list[Finding]:
     if len(bodies) == 1 or request.solid is not None:
         return []
     others = ", ".join(
         f"{n} ({len(b.tags)} faces, {b.volume:.0f} mm3)"
         for n, b in enumerate(bodies, start=1)
-        if n != chosen
+        if n != number
     )
-    text = f"the file holds {len(bodies)} solids; solid {chosen}, the largest, is taken; the others: {others}"
+    text = f"the file holds {len(bodies)} solids; solid {number}, the largest, is taken; the others: {others}"
     return [
         warning(
             "part.several-solids",

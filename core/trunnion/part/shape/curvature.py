@@ -1,4 +1,4 @@
-"""The curvatures of a trimmed face: at places spread over it and along its edges, and the extremes, searched closer around the best."""
+"""The curvatures of a trimmed face: at positions spread over it and along its edges, and the extremes, searched closer around the best."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from trunnion.part.shape.evaluate import evaluator_of
 from trunnion.part.topology.identity import Shape, edges_of
 
 _GRID, _ALONG = 7, 17
-"""Places along either parameter, and along each edge."""
+"""Positions along either parameter, and along each edge."""
 _ZOOM, _ZOOMS = 5, 4
-"""How often the surroundings of the best place are looked at again, and with how many places along either parameter."""
+"""How often the surroundings of the best position are looked at again, and with how many positions along either parameter."""
 _SAME_EVERYWHERE = (GeomAbs_Plane, GeomAbs_Cylinder, GeomAbs_Sphere)
 
 
 class _Bending:
-    """The principal curvatures of one face, as it lies in the solid, at places of its parameters."""
+    """The principal curvatures of one face, as it lies in the solid, at positions of its parameters."""
 
     def __init__(self, face: Shape) -> None:
         self.adaptor = BRepAdaptor_Surface(face)
@@ -32,16 +32,16 @@ class _Bending:
         self._hollow = face.Orientation() == TopAbs_REVERSED
         self._trim = BRepTopAdaptor_FClass2d(face, tolerance.COINCIDENT)
 
-    def inside(self, places: Floats) -> Bools:
-        """Return which places (k, 2) lie inside the trim."""
+    def inside(self, uv: Floats) -> Bools:
+        """Return which uv (k, 2) lie inside the trim."""
         return np.array(
-            [self._trim.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in places.tolist()],
+            [self._trim.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in uv.tolist()],
             dtype=bool,
         )
 
-    def at(self, places: Floats) -> Floats:
-        """Return the lesser and the greater principal curvature (k, 2) at places (k, 2)."""
-        rows = self._evaluate(places)
+    def at(self, uv: Floats) -> Floats:
+        """Return the lesser and the greater principal curvature (k, 2) at uv (k, 2)."""
+        rows = self._evaluate(uv)
         bends = principal_curvatures(*(rows[:, n] for n in range(1, 6)))
         return -bends[:, ::-1] if self._hollow else bends
 
@@ -64,13 +64,13 @@ def bend_of(face: Shape) -> FaceCurvature:
         spread = bending.at(grid[:1])
         return FaceCurvature(spread=spread, least=float(spread[0, 0]), most=float(spread[0, 1]))
     inside = grid[bending.inside(grid)]
-    places = np.vstack([inside, _along_edges(face)])
-    bends = bending.at(places)
+    uv = np.vstack([inside, _along_edges(face)])
+    bends = bending.at(uv)
     known = np.asarray(np.isfinite(bends).all(axis=1))
     if not known.any():
         return FaceCurvature(spread=np.zeros((0, 2)), least=0.0, most=0.0)
     within = bends[: len(inside)][known[: len(inside)]]
-    least, most = _extremes(bending, places[known], bends[known], step)
+    least, most = _extremes(bending, uv[known], bends[known], step)
     return FaceCurvature(spread=within if len(within) else bends[known], least=least, most=most)
 
 
@@ -86,12 +86,10 @@ def _along_edges(shape: Shape) -> Floats:
     return np.array(found).reshape(-1, 2)
 
 
-def _extremes(
-    bending: _Bending, places: Floats, bends: Floats, reach: Floats
-) -> tuple[float, float]:
-    """Return the least and the greatest curvature at places (k, 2) and around the best of them, in smaller and smaller steps."""
+def _extremes(bending: _Bending, uv: Floats, bends: Floats, reach: Floats) -> tuple[float, float]:
+    """Return the least and the greatest curvature at uv (k, 2) and around the best of them, in smaller and smaller steps."""
     best = np.array([-bends[:, 0].min(), bends[:, 1].max()])
-    centre = places[[int(bends[:, 0].argmin()), int(bends[:, 1].argmax())]]
+    centre = uv[[int(bends[:, 0].argmin()), int(bends[:, 1].argmax())]]
     share = np.linspace(-1.0, 1.0, _ZOOM)
     around = np.stack(np.meshgrid(share, share, indexing="ij"), axis=-1).reshape(-1, 2)
     for _ in range(_ZOOMS):

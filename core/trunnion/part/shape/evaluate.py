@@ -1,4 +1,5 @@
-"""Surfaces of faces evaluated at many places at once: closed forms, B-splines as arrays, and the CAD kernel one by one for what is left."""
+"""Surfaces of faces evaluated at many positions at once: closed forms, B-splines as arrays, and the CAD kernel one by one for what is
+left."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.surface.spline import SplineSurface
 
 Evaluator = Callable[[Floats], Floats]
-"""From places (k, 2) to (k, 6, 3): point, derivatives by u and v, second ones by u twice, by both, by v twice."""
+"""From uv (k, 2) to (k, 6, 3): point, derivatives by u and v, second ones by u twice, by both, by v twice."""
 
 
 def evaluator_of(adaptor: Any) -> Evaluator:
@@ -83,9 +84,9 @@ def _axes(position: Any) -> tuple[Floats, Floats, Floats, Floats]:
 def _plane(adaptor: Any) -> Evaluator:
     origin, x, y, _ = _axes(adaptor.Plane().Position())
 
-    def at(places: Floats) -> Floats:
-        out = np.zeros((len(places), 6, 3))
-        out[:, 0] = origin + places[:, :1] * x + places[:, 1:] * y
+    def at(uv: Floats) -> Floats:
+        out = np.zeros((len(uv), 6, 3))
+        out[:, 0] = origin + uv[:, :1] * x + uv[:, 1:] * y
         out[:, 1], out[:, 2] = x, y
         return out
 
@@ -118,8 +119,8 @@ def _turned(
 def _cylinder(adaptor: Any) -> Evaluator:
     axes, radius = _axes(adaptor.Cylinder().Position()), adaptor.Cylinder().Radius()
 
-    def at(places: Floats) -> Floats:
-        u, v = places.T
+    def at(uv: Floats) -> Floats:
+        u, v = uv.T
         zero, one = np.zeros_like(v), np.ones_like(v)
         return _turned(
             *axes, u, np.column_stack([radius * one, zero, zero]), np.column_stack([v, one, zero])
@@ -137,8 +138,8 @@ def _cone(adaptor: Any) -> Evaluator:
         np.cos(cone.SemiAngle()),
     )
 
-    def at(places: Floats) -> Floats:
-        u, v = places.T
+    def at(uv: Floats) -> Floats:
+        u, v = uv.T
         zero, one = np.zeros_like(v), np.ones_like(v)
         return _turned(
             *axes,
@@ -151,8 +152,8 @@ def _cone(adaptor: Any) -> Evaluator:
 
 
 def _round(axes: tuple[Floats, Floats, Floats, Floats], major: float, minor: float) -> Evaluator:
-    def at(places: Floats) -> Floats:
-        u, v = places.T
+    def at(uv: Floats) -> Floats:
+        u, v = uv.T
         c, s = minor * np.cos(v), minor * np.sin(v)
         return _turned(*axes, u, np.column_stack([major + c, -s, -c]), np.column_stack([s, c, -s]))
 
@@ -182,9 +183,9 @@ def _one_by_one(adaptor: Any) -> Evaluator:
 
     point, du, dv, duu, dvv, duv = gp_Pnt(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec(), gp_Vec()
 
-    def at(places: Floats) -> Floats:
-        rows = np.empty((len(places), 18))
-        for k, (u, v) in enumerate(places.tolist()):
+    def at(uv: Floats) -> Floats:
+        rows = np.empty((len(uv), 18))
+        for k, (u, v) in enumerate(uv.tolist()):
             adaptor.D2(u, v, point, du, dv, duu, dvv, duv)
             rows[k] = (
                 *point.Coord(),

@@ -1,4 +1,4 @@
-"""A face as its CAD surface has it: exact points, normals and bends at places of its own two parameters, and what its trim holds."""
+"""A face as its CAD surface has it: exact points, normals and bends at positions of its own two parameters, and what its trim holds."""
 
 from __future__ import annotations
 
@@ -64,20 +64,20 @@ class ExactFace:
         """Return the least and greatest u and v of the trimmed area."""
         return self._view.bounds()
 
-    def inside(self, places: Floats) -> Bools:
-        """Return which places (k, 2) lie inside the trim."""
-        return self._trim.holds(np.asarray(places, dtype=np.float64))
+    def inside(self, uv: Floats) -> Bools:
+        """Return which uv (k, 2) lie inside the trim."""
+        return self._trim.holds(np.asarray(uv, dtype=np.float64))
 
-    def at(self, places: Floats) -> ExactPoints:
-        """Return the surface at places (k, 2)."""
-        rows = self._evaluate(np.asarray(places, dtype=np.float64)).reshape(-1, 18)
+    def at(self, uv: Floats) -> ExactPoints:
+        """Return the surface at uv (k, 2)."""
+        rows = self._evaluate(np.asarray(uv, dtype=np.float64)).reshape(-1, 18)
         along, across, twice_u, both, twice_v = (
             self._frame.local_direction(rows[:, c : c + 3]) for c in range(3, 18, 3)
         )
         # Frames keep hands, so the normal's side is the same in all of them.
         normal, size = _scaled(self._view.side * np.cross(along, across))
         for row in np.flatnonzero(size[:, 0] <= 0.0).tolist():
-            normal[row] = self._frame.local_direction(self._view.at(*places[row])[1])
+            normal[row] = self._frame.local_direction(self._view.at(*uv[row])[1])
         turns = (
             np.cross(twice_u, across) + np.cross(along, both),
             np.cross(both, across) + np.cross(along, twice_v),

@@ -16,7 +16,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 from trunnion.geometry.frame import Frame
 from trunnion.part.shape.refine_mesh import opened
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -64,7 +64,7 @@ def facets_of(
     part: Part,
     frame: Frame,
     chord: float = tolerance.FACET_CHORD,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     only: Collection[int] | None = None,
 ) -> Facets:
     """Return a part's faces as triangles in a frame, curved ones within a chord error (mm).
@@ -85,7 +85,7 @@ def facets_of(
 
 
 def facet_samples(
-    facets: Facets, rows: Ints, spacing: float, progress: Progress = QUIET
+    facets: Facets, rows: Ints, spacing: float, progress: Progress = NO_PROGRESS
 ) -> tuple[Ints, Floats, Floats, Floats]:
     """Return samples of some faces about `spacing` mm apart: face (s,) rows, point and outward normal (s, 3), area (s,) mm2.
 
@@ -107,8 +107,8 @@ def _face_samples(
     facets: Facets, row: int, spacing: float, progress: Progress
 ) -> tuple[Ints, Floats, Floats, Floats]:
     """Return the samples of one face."""
-    chosen = facets.face == row
-    corners, face = facets.points[facets.triangles[chosen]], facets.face[chosen]
+    own = facets.face == row
+    corners, face = facets.points[facets.triangles[own]], facets.face[own]
     normal, area = _normals(corners)
     width = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
     cuts = np.maximum(np.ceil(width / spacing), 1.0).astype(np.int64)

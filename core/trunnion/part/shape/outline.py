@@ -59,8 +59,8 @@ def _piece(adaptor: object, frame: Frame) -> tuple[Floats, Floats]:
     curve = recognised_curve(adaptor)
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()  # type: ignore[attr-defined]
     steps = 2 if curve.kind == "line" else _STEPS
-    places = np.linspace(first, last, steps)
-    flat = frame.to_local(np.array([adaptor.Value(t).Coord() for t in places]))[:, :2]  # type: ignore[attr-defined]
+    parameters = np.linspace(first, last, steps)
+    flat = frame.to_local(np.array([adaptor.Value(t).Coord() for t in parameters]))[:, :2]  # type: ignore[attr-defined]
     if curve.kind == "line":
         return flat, np.zeros(1)
     if curve.kind == "circle":

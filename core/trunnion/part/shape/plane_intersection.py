@@ -30,7 +30,7 @@ Node = tuple[int, int]
 Nodes = list[tuple[Node, Floats]]
 Piece = tuple[Node | None, Node | None, Floats, Floats]
 Triple = tuple[float, float, float]
-Place = tuple[float, float]
+UV = tuple[float, float]
 
 
 @dataclass(slots=True, eq=False)
@@ -43,7 +43,7 @@ class Tracer:
     size: float
     bounds: tuple[float, float, float, float] = field(init=False)
     wraps: tuple[str, str] = field(init=False)
-    _places: Any = field(init=False)
+    _projection: Any = field(init=False)
     _held: tuple[Any, Any, Any] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -53,40 +53,40 @@ class Tracer:
             _wrap(surface.IsUPeriodic(), surface.IsUClosed()),
             _wrap(surface.IsVPeriodic(), surface.IsVClosed()),
         )
-        self._places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
+        self._projection = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
         self._held = (gp_Pnt(), gp_Vec(), gp_Vec())
 
-    def place(self, point: Floats) -> Place:
+    def uv_of(self, point: Floats) -> UV:
         """Return the (u, v) under a point on the surface."""
-        found = self._places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
+        found = self._projection.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
         return self._bounded(found.X(), found.Y())
 
-    def at(self, place: Place) -> tuple[Triple, Triple, Triple]:
+    def at(self, uv: UV) -> tuple[Triple, Triple, Triple]:
         """Return the point and the two first derivatives at (u, v)."""
         point, du, dv = self._held
-        self.view.adaptor.D1(place[0], place[1], point, du, dv)
+        self.view.adaptor.D1(uv[0], uv[1], point, du, dv)
         return point.Coord(), du.Coord(), dv.Coord()
 
     def above(self, point: Triple) -> float:
         """Return the height of a point above the plane."""
         return _dot(point, self.normal) - self.offset
 
-    def direction(self, place: Place) -> Triple:
+    def direction(self, uv: UV) -> Triple:
         """Return the unit direction of the curve at (u, v)."""
-        _, du, dv = self.at(place)
+        _, du, dv = self.at(uv)
         return _unit(_cross(_cross(du, dv), self.normal))
 
-    def stepped(self, place: Place, along: Triple) -> Place:
-        """Return the place on the plane after a step in space."""
-        _, du, dv = self.at(place)
+    def stepped(self, uv: UV, along: Triple) -> UV:
+        """Return the position on the plane after a step in space."""
+        _, du, dv = self.at(uv)
         a, b = _solved(du, dv, along)
-        return self.onto_plane((place[0] + a, place[1] + b))
+        return self.onto_plane((uv[0] + a, uv[1] + b))
 
-    def onto_plane(self, place: Place) -> Place:
-        """Return the place pulled onto the plane along the surface's steepest direction."""
+    def onto_plane(self, uv: UV) -> UV:
+        """Return the position pulled onto the plane along the surface's steepest direction."""
         for _ in range(_NEWTON):
-            place = self._bounded(*place)
-            point, du, dv = self.at(place)
+            uv = self._bounded(*uv)
+            point, du, dv = self.at(uv)
             miss = self.above(point)
             if abs(miss) < tolerance.PARAMETRIC:
                 break
@@ -98,19 +98,19 @@ class Tracer:
             a, b = _solved(
                 du, dv, _scaled(_less(self.normal, _scaled(across, lean)), -miss / steep)
             )
-            place = (place[0] + a, place[1] + b)
-        return self._bounded(*place)
+            uv = (uv[0] + a, uv[1] + b)
+        return self._bounded(*uv)
 
-    def _bounded(self, u: float, v: float) -> Place:
+    def _bounded(self, u: float, v: float) -> UV:
         u0, u1, v0, v1 = self.bounds
         return _bounded(u, u0, u1, self.wraps[0]), _bounded(v, v0, v1, self.wraps[1])
 
     def follow(
-        self, start: Place, way: float, targets: list[tuple[Node, Triple, Place]]
+        self, start: UV, sense: float, targets: list[tuple[Node, Triple, UV]]
     ) -> tuple[Node | None, Floats, Floats] | None:
         """Return the node where the curve ends (None: where it began, when there are no targets), points to it and directions, or None."""
-        place, (point, _, _), step = start, self.at(start), self.size * _LONGEST
-        home, heading = point, _scaled(self.direction(start), way)
+        uv, (point, _, _), step = start, self.at(start), self.size * _LONGEST
+        home, heading = point, _scaled(self.direction(start), sense)
         points, headings, travelled = [point], [heading], 0.0
         for _ in range(_MOST_STEPS):
             end = self._end(point, heading, step, targets)
@@ -121,11 +121,9 @@ class Tracer:
                 and _ahead(point, home, heading, step)
             ):
                 return None, np.array([*points, home]), np.array([*headings, headings[0]])
-            after = (
-                targets[end][2] if end is not None else self.stepped(place, _scaled(heading, step))
-            )
+            after = targets[end][2] if end is not None else self.stepped(uv, _scaled(heading, step))
             there = targets[end][1] if end is not None else self.at(after)[0]
-            towards = _scaled(self.direction(after), way)
+            towards = _scaled(self.direction(after), sense)
             if not _follows(point, heading, there, towards) and step > self.size * _SHORTEST:
                 step *= 0.5
                 continue
@@ -137,13 +135,13 @@ class Tracer:
             if moved < 0.01 * step:
                 return None
             travelled += moved
-            place, point, heading = after, there, towards
+            uv, point, heading = after, there, towards
             step = min(_GROWTH * step, self.size * _LONGEST)
         return None
 
     @staticmethod
     def _end(
-        point: Triple, heading: Triple, step: float, targets: list[tuple[Node, Triple, Place]]
+        point: Triple, heading: Triple, step: float, targets: list[tuple[Node, Triple, UV]]
     ) -> int | None:
         near = [
             (math.dist(point, p), n)
@@ -164,56 +162,58 @@ def trace(
     """
     size = max(float(np.linalg.norm(high - low)), tolerance.COINCIDENT)
     tracer = Tracer(view, tuple(plane.normal.tolist()), plane.offset, size)
-    left = [
-        (node, tuple(point.tolist()), tracer.place(point))
+    remaining = [
+        (node, tuple(point.tolist()), tracer.uv_of(point))
         for node, point in own
         if node[0] not in seams
     ]
-    if not left:
+    if not remaining:
         yield from _loops(tracer)
-    while left:
-        node, point, place = left.pop(0)
-        nearest = min((math.dist(p, point) for _, p, _ in left), default=size)
+    while remaining:
+        node, point, uv = remaining.pop(0)
+        nearest = min((math.dist(p, point) for _, p, _ in remaining), default=size)
         nudge = 0.02 * min(size, nearest)
-        ways = sorted(
+        senses = sorted(
             (1.0, -1.0),
-            key=lambda way: (
-                not view.holds(
-                    *tracer.stepped(place, _scaled(tracer.direction(place), way * nudge))
-                )
+            key=lambda sense: (
+                not view.holds(*tracer.stepped(uv, _scaled(tracer.direction(uv), sense * nudge)))
             ),
         )
         found = (
             next(
-                (f for f in (tracer.follow(place, way, left) for way in ways) if f is not None),
+                (
+                    f
+                    for f in (tracer.follow(uv, sense, remaining) for sense in senses)
+                    if f is not None
+                ),
                 None,
             )
-            if left
+            if remaining
             else None
         )
         if found is None:
             raise BadInput(
                 "a section curve ends inside a free-form face; heal the part in the CAD system"
             )
-        left = [item for item in left if item[0] != found[0]]
+        remaining = [item for item in remaining if item[0] != found[0]]
         yield node, *found
 
 
 def _loops(tracer: Tracer) -> Iterator[Piece]:
-    """Yield the closed curves of a plane that meets a face but none of its edges, from places where samples change side."""
-    places = np.array(tracer.view.grid(_SEEDS)).reshape(_SEEDS, _SEEDS, 2)
+    """Yield the closed curves of a plane that meets a face but none of its edges, from positions where samples change side."""
+    seeds = np.array(tracer.view.grid(_SEEDS)).reshape(_SEEDS, _SEEDS, 2)
     heights = np.array(
-        [[tracer.above(tracer.at((u, v))[0]) for u, v in row] for row in places.tolist()]
+        [[tracer.above(tracer.at((u, v))[0]) for u, v in row] for row in seeds.tolist()]
     )
     done: list[Floats] = []
     for k, m in zip(*np.nonzero((heights[:, :-1] > 0.0) != (heights[:, 1:] > 0.0)), strict=True):
         share = heights[k, m] / (heights[k, m] - heights[k, m + 1])
-        u, v = (places[k, m] + share * (places[k, m + 1] - places[k, m])).tolist()
-        place = tracer.onto_plane((u, v))
-        point = np.array(tracer.at(place)[0])
-        if not tracer.view.holds(*place) or any(_beside(points, point) for points in done):
+        u, v = (seeds[k, m] + share * (seeds[k, m + 1] - seeds[k, m])).tolist()
+        uv = tracer.onto_plane((u, v))
+        point = np.array(tracer.at(uv)[0])
+        if not tracer.view.holds(*uv) or any(_is_near(points, point) for points in done):
             continue
-        found = tracer.follow(place, 1.0, [])
+        found = tracer.follow(uv, 1.0, [])
         if found is None:
             raise BadInput(
                 "a closed section curve can't be followed over a free-form face; heal the part in the CAD system"
@@ -222,7 +222,7 @@ def _loops(tracer: Tracer) -> Iterator[Piece]:
         yield None, *found
 
 
-def _beside(points: Floats, point: Floats) -> bool:
+def _is_near(points: Floats, point: Floats) -> bool:
     """Return whether a point lies on a curve that was followed already: nearer to a chord than a tenth of its length."""
     start, chord = points[:-1], np.diff(points, axis=0)
     square = (chord * chord).sum(axis=1)
@@ -251,8 +251,8 @@ def _angle(direction: Triple, chord: Triple, size: float) -> float:
 
 
 def _ahead(point: Triple, target: Triple, heading: Triple, step: float) -> bool:
-    way = _less(target, point)
-    return math.sqrt(_dot(way, way)) <= step and _dot(way, heading) > -tolerance.COINCIDENT
+    sense = _less(target, point)
+    return math.sqrt(_dot(sense, sense)) <= step and _dot(sense, heading) > -tolerance.COINCIDENT
 
 
 def _wrap(is_periodic: bool, is_closed: bool) -> str:

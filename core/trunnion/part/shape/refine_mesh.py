@@ -17,7 +17,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -39,7 +39,7 @@ ROUNDS, LATE = 16, 6
 just within its limit, others would come nearer to that without end."""
 
 MANY = 4000
-"""Places evaluated between two looks at cancel: some hundredths of a second where the kernel does it one by one."""
+"""Positions evaluated between two looks at cancel: some hundredths of a second where the kernel does it one by one."""
 PIECES = 1 << (ROUNDS + 2)
 """Numbers for all pieces of a piece of the border: halves of piece n are 2 n and 2 n + 1."""
 
@@ -60,7 +60,9 @@ class RefinedMesh:
     bound: Floats
 
 
-def opened(part: Part, chords: Mapping[int, float], progress: Progress = QUIET) -> RefinedMesh:
+def opened(
+    part: Part, chords: Mapping[int, float], progress: Progress = NO_PROGRESS
+) -> RefinedMesh:
     """Return the faces of the tags in `chords` as triangles, each within its chord error (mm), as measured.
 
     Raises `BadInput` for a face that the mesher can't do and `OutOfMemory` beyond `MOST_TRIANGLES`.
@@ -133,7 +135,7 @@ def _key(pairs: Ints) -> Ints:
 
 @dataclass(slots=True)
 class _Net:
-    """The triangles while they are refined. place (v, 2) is where points (v, 3) are on their faces' surfaces, owner (v,) the faces' rows;
+    """The triangles while they are refined. uv (v, 2) is where points (v, 3) are on their faces' surfaces, owner (v,) the faces' rows;
     surface (v, 3): the surfaces' points there, from which those on edges may be as far as the part's tolerances allow; fixed (v, 2):
     whether u and v mean anything there (at a pole one of them doesn't)."""
 
@@ -142,7 +144,7 @@ class _Net:
     sides: Floats
     limits: Floats
     middles: Floats
-    place: Floats
+    uv: Floats
     points: Floats
     surface: Floats
     owner: Ints
@@ -153,7 +155,7 @@ class _Net:
     lines: list[Any]
     fixed: Bools
     bound: Floats
-    progress: Progress = QUIET
+    progress: Progress = NO_PROGRESS
 
     def join_poles(self) -> None:
         """Make one point of all that lie in the same pole, and leave out the triangles between them, which have no area."""
@@ -169,27 +171,27 @@ class _Net:
         some = (a != b) & (b != c) & (c != a)
         self.triangles, self.face = self.triangles[some], self.face[some]
 
-    def on(self, owner: Ints, places: Floats) -> Floats:
-        """Return points and derivatives (k, 6, 3) of faces, by row (k,), at places (k, 2)."""
-        out = np.empty((len(places), 6, 3))
+    def on(self, owner: Ints, uv: Floats) -> Floats:
+        """Return points and derivatives (k, 6, 3) of faces, by row (k,), at uv (k, 2)."""
+        out = np.empty((len(uv), 6, 3))
         order = np.argsort(owner, kind="stable")
         for rows in (
             np.split(order, np.flatnonzero(np.diff(owner[order])) + 1) if len(order) else []
         ):
             for some in np.split(rows, range(MANY, len(rows), MANY)):
                 self.progress.check()
-                out[some] = self.evaluators[int(owner[rows[0]])](places[some])
+                out[some] = self.evaluators[int(owner[rows[0]])](uv[some])
         return out
 
     def between(self, nodes: Ints, share: Floats) -> Floats:
-        """Return places (k, 2) at shares (n,) between nodes (k, n); what means nothing at a pole doesn't count."""
-        places = sum(s * self.place[n] for s, n in zip(share, nodes.T, strict=True))
+        """Return uv (k, 2) at shares (n,) between nodes (k, n); what means nothing at a pole doesn't count."""
+        uv = sum(s * self.uv[n] for s, n in zip(share, nodes.T, strict=True))
         whole = np.asarray(self.fixed.all(axis=1))
-        beside = np.flatnonzero(~whole[nodes].all(axis=1))
-        counts = self.fixed[nodes[beside]] * share[:, None]
+        partly = np.flatnonzero(~whole[nodes].all(axis=1))
+        counts = self.fixed[nodes[partly]] * share[:, None]
         counts = np.where(counts.sum(axis=1, keepdims=True) > 0.0, counts, share[:, None])
-        places[beside] = (self.place[nodes[beside]] * counts).sum(axis=1) / counts.sum(axis=1)
-        return np.asarray(places)
+        uv[partly] = (self.uv[nodes[partly]] * counts).sum(axis=1) / counts.sum(axis=1)
+        return np.asarray(uv)
 
     def off(self, nodes: Ints, shares: Floats) -> Floats:
         """Return how far (k,) the surface is at most from edges or triangles (k, n) of nodes, at shares (s, n) between those, along its
@@ -252,11 +254,11 @@ class _Net:
 
     def bounded(self) -> Floats:
         """Add to the bounds how far points on edges are from the faces' surfaces; return the normals (v, 3) at all points."""
-        normals, beside = self.normals(), np.zeros(len(self.bound))
+        normals, partly = self.normals(), np.zeros(len(self.bound))
         np.maximum.at(
-            beside, self.owner, np.abs(((self.points - self.surface) * normals).sum(axis=1))
+            partly, self.owner, np.abs(((self.points - self.surface) * normals).sum(axis=1))
         )
-        self.bound += beside
+        self.bound += partly
         return normals
 
     def _agree(self, split: Bools, border: Ints) -> None:
@@ -326,7 +328,7 @@ class _Net:
         node = np.full(len(split), -1)
         node[rows] = len(self.points) + np.arange(len(rows))
         owner = self.owner[edges[rows, 0]]
-        places = self.between(edges[rows], ALONG[0])
+        uv = self.between(edges[rows], ALONG[0])
         own = self.border.key()
         at = np.searchsorted(keys, own)
         cut = (at < len(keys)) & (keys[np.minimum(at, len(keys) - 1)] == own)
@@ -334,10 +336,10 @@ class _Net:
         pieces, new = self.border.some(cut), node[at[cut]]
         t = pieces.t.mean(axis=1)
         middles = self.progress.each(zip(pieces.line.tolist(), t.tolist(), strict=True))
-        places[new - len(self.points)] = np.array(
+        uv[new - len(self.points)] = np.array(
             [self.lines[k].Value(m).Coord() for k, m in middles]
         ).reshape(-1, 2)
-        surface = self.on(owner, places)[:, 0]
+        surface = self.on(owner, uv)[:, 0]
         points = surface.copy()
         points[new - len(self.points)] = self._border_at(pieces, ALONG[0])
         kept = self.border.some(~cut)
@@ -347,7 +349,7 @@ class _Net:
                 for name in _Border.__slots__
             )
         )
-        self.place, self.points = np.vstack([self.place, places]), np.vstack([self.points, points])
+        self.uv, self.points = np.vstack([self.uv, uv]), np.vstack([self.points, points])
         self.surface = np.vstack([self.surface, surface])
         self.owner = np.concatenate([self.owner, owner])
         self.fixed = np.vstack([self.fixed, np.ones((len(rows), 2), bool)])
@@ -395,14 +397,14 @@ class _Net:
 
     def normals(self) -> Floats:
         """Return the outward unit normals (v, 3) of the faces at all points."""
-        normals, there = self.normal(self.on(self.owner, self.place))
+        normals, there = self.normal(self.on(self.owner, self.uv))
         lost = np.flatnonzero(~there)
         if len(lost):
             # Beside a pole, where the surface has no normal, the one next to it.
-            beside = self.place[lost] + tolerance.ANGLE * (
-                self.middles[self.owner[lost]] - self.place[lost]
+            partly = self.uv[lost] + tolerance.ANGLE * (
+                self.middles[self.owner[lost]] - self.uv[lost]
             )
-            normals[lost] = self.normal(self.on(self.owner[lost], beside))[0]
+            normals[lost] = self.normal(self.on(self.owner[lost], partly))[0]
         return np.asarray(normals * self.sides[self.owner][:, None])
 
     def result(self, tags: list[int], normals: Floats) -> RefinedMesh:
@@ -437,7 +439,7 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
     curves: list[Any] = []
     lines: list[Any] = []
     evaluators, sides, middles = [], [], []
-    places, points, owners, triangles, faces, borders = [], [], [], [], [], []
+    parameters, points, owners, triangles, faces, borders = [], [], [], [], [], []
     count = 0
     for row, tag in enumerate(progress.over(tags, "Opening the faces into triangles")):
         shape = part.face_shape(tag)
@@ -459,7 +461,7 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
             )
         )
         borders += _border_of(shape, net, uv, index, curves, lines, count)
-        places.append(uv)
+        parameters.append(uv)
         points.append(p)
         owners.append(np.full(len(p), row))
         triangles.append(t + count)
@@ -476,7 +478,7 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
         np.array(sides),
         limits,
         np.array(middles),
-        np.concatenate(places),
+        np.concatenate(parameters),
         np.concatenate(points),
         np.zeros((count, 3)),
         np.concatenate(owners),
@@ -488,7 +490,7 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
         np.ones((count, 2), bool),
         np.zeros(len(tags)),
     )
-    at = net.on(net.owner, net.place)
+    at = net.on(net.owner, net.uv)
     net.surface, lengths = at[:, 0], np.linalg.norm(at[:, 1:3], axis=2)
     net.fixed = lengths > tolerance.PARAMETRIC * np.maximum(
         lengths.max(axis=1, keepdims=True), tolerance.COINCIDENT
@@ -504,7 +506,7 @@ def _side(shape: Any) -> float:
 
 
 def _net_of(shape: Any) -> tuple[Floats, Floats, Ints, Any]:
-    """Return the net that the mesher has left on a face: places (v, 2), points (v, 3), triangles (t, 3), and the kernel's own object."""
+    """Return the net that the mesher has left on a face: uv (v, 2), points (v, 3), triangles (t, 3), and the kernel's own object."""
     from OCP.BRep import BRep_Tool
     from OCP.TopLoc import TopLoc_Location
 
@@ -513,7 +515,7 @@ def _net_of(shape: Any) -> tuple[Floats, Floats, Ints, Any]:
     if net is None or not net.NbTriangles():
         return np.zeros((0, 2)), np.zeros((0, 3)), np.zeros((0, 3), np.int64), net
     points = np.array([net.Node(n).Coord() for n in range(1, net.NbNodes() + 1)])
-    places = np.array([net.UVNode(n).Coord() for n in range(1, net.NbNodes() + 1)])
+    uv = np.array([net.UVNode(n).Coord() for n in range(1, net.NbNodes() + 1)])
     triangles = (
         np.array([net.Triangle(n).Get() for n in range(1, net.NbTriangles() + 1)], dtype=np.int64)
         - 1
@@ -522,25 +524,25 @@ def _net_of(shape: Any) -> tuple[Floats, Floats, Ints, Any]:
         move = where.Transformation()
         turn = np.array([[move.Value(r, c) for c in range(1, 5)] for r in range(1, 4)])
         points = points @ turn[:, :3].T + turn[:, 3]
-    return places, points, triangles, net
+    return uv, points, triangles, net
 
 
 def _looks_out(
-    evaluate: Evaluator, side: float, places: Floats, points: Floats, triangles: Ints
+    evaluate: Evaluator, side: float, uv: Floats, points: Floats, triangles: Ints
 ) -> bool:
     """Return whether triangles run anticlockwise seen from outside: on surfaces of revolution the mesher's order doesn't show it
     (measured)."""
     corners = points[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     largest = np.argsort(-(across * across).sum(axis=1), kind="stable")[:1]
-    at = evaluate(places[triangles[largest]].mean(axis=1))
+    at = evaluate(uv[triangles[largest]].mean(axis=1))
     return float((np.cross(at[:, 1], at[:, 2]) * across[largest]).sum()) * side > 0.0
 
 
 def _border_of(
     shape: Any,
     net: Any,
-    places: Floats,
+    uv: Floats,
     index: Any,
     curves: list[Any],
     lines: list[Any],
@@ -578,7 +580,7 @@ def _border_of(
         lines.append(
             min(
                 both,
-                key=lambda line: np.hypot(*(np.array(line.Value(t[0]).Coord()) - places[nodes[0]])),
+                key=lambda line: np.hypot(*(np.array(line.Value(t[0]).Coord()) - uv[nodes[0]])),
             )
         )
         n, nodes = len(nodes) - 1, nodes + first

@@ -38,7 +38,7 @@ from trunnion.part.topology.extent import edge_extremes, face_box
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.graph import coedges
 from trunnion.part.topology.identity import Shape
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 _SAMPLES = 33
 _TRIES = 50
@@ -96,14 +96,14 @@ class SectionFace:
     edges: tuple[int, ...]
     low: Floats
     high: Floats
-    places: Any = None
+    projection: Any = None
 
     def holds(self, point: Floats) -> bool:
         """Return whether a point on the surface lies inside the trimmed area."""
-        if self.places is None:
-            self.places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
-        place = self.places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
-        return self.view.holds(place.X(), place.Y())
+        if self.projection is None:
+            self.projection = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
+        uv = self.projection.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
+        return self.view.holds(uv.X(), uv.Y())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,7 +119,9 @@ class SectionPiece:
 class SolidSlicer:
     """Answers sections of one solid; what doesn't depend on the plane is prepared once."""
 
-    def __init__(self, shape: Shape, faces: Iterable[Shape], progress: Progress = QUIET) -> None:
+    def __init__(
+        self, shape: Shape, faces: Iterable[Shape], progress: Progress = NO_PROGRESS
+    ) -> None:
         index = TopTools_IndexedMapOfShape()
         TopExp.MapShapes_s(shape, TopAbs_EDGE, index)
         shapes = [TopoDS.Edge_s(index.FindKey(n)) for n in range(1, index.Extent() + 1)]
@@ -141,7 +143,7 @@ class SolidSlicer:
         )
         self._others = [n for n, e in self.edges.items() if e.kind != GeomAbs_Line]
 
-    def section(self, frame: Frame, z: float, progress: Progress = QUIET) -> Region:
+    def section(self, frame: Frame, z: float, progress: Progress = NO_PROGRESS) -> Region:
         """Return the material cut by the plane at a height of a frame, in the frame's x and y."""
         progress.check()
         plane = self._clear_of_corners(frame, z)
@@ -178,8 +180,8 @@ class SolidSlicer:
         for n in range(_TRIES):
             plane = Plane.at(frame, z + n * tolerance.SECTION_STEP)
             near = np.searchsorted(heights, plane.offset)
-            beside = heights[max(near - 1, 0) : near + 1]
-            if not (np.abs(beside - plane.offset) < 2.0 * tolerance.COINCIDENT).any():
+            near_heights = heights[max(near - 1, 0) : near + 1]
+            if not (np.abs(near_heights - plane.offset) < 2.0 * tolerance.COINCIDENT).any():
                 return plane
         raise BadInput(
             f"no section at z = {z:g}: the part has corners at every height there; choose another height"
@@ -209,13 +211,14 @@ class SolidSlicer:
             edge = self.edges[n]
             heights = plane.above(edge.extremes)
             if heights.min() < 0.0 < heights.max():
-                places = (
+                parameters = (
                     _on_circle(edge, plane)
                     if edge.kind == GeomAbs_Circle
                     else _on_curve(edge, plane)
                 )
                 found[n] = [
-                    ((n, k), np.array(edge.adaptor.Value(t).Coord())) for k, t in enumerate(places)
+                    ((n, k), np.array(edge.adaptor.Value(t).Coord()))
+                    for k, t in enumerate(parameters)
                 ]
         return found
 
@@ -236,10 +239,10 @@ def _on_circle(edge: SectionEdge, plane: Plane) -> list[float]:
         np.array(circle.YAxis().Direction().Coord()),
     )
     a, b = circle.Radius() * float(x @ plane.normal), circle.Radius() * float(y @ plane.normal)
-    height, swing = float(plane.above(np.array(circle.Location().Coord()))), math.hypot(a, b)
-    if abs(height) >= swing:
+    height, amplitude = float(plane.above(np.array(circle.Location().Coord()))), math.hypot(a, b)
+    if abs(height) >= amplitude:
         return []
-    middle, half = math.atan2(b, a), math.acos(-height / swing)
+    middle, half = math.atan2(b, a), math.acos(-height / amplitude)
     turns = [
         edge.first + (t - edge.first) % (2.0 * math.pi) for t in (middle - half, middle + half)
     ]
@@ -248,11 +251,11 @@ def _on_circle(edge: SectionEdge, plane: Plane) -> list[float]:
 
 def _on_curve(edge: SectionEdge, plane: Plane) -> list[float]:
     """Return the parameters where a free edge meets the plane, ascending, by halving between samples of unlike side."""
-    places = np.linspace(edge.first, edge.last, _SAMPLES)
+    parameters = np.linspace(edge.first, edge.last, _SAMPLES)
     heights = plane.above(edge.points)
     found = []
     for k in np.nonzero((heights[:-1] > 0.0) != (heights[1:] > 0.0))[0]:
-        low, high, was = float(places[k]), float(places[k + 1]), heights[k] > 0.0
+        low, high, was = float(parameters[k]), float(parameters[k + 1]), heights[k] > 0.0
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
             if (plane.above(np.array(edge.adaptor.Value(middle).Coord())) > 0.0) == was:

@@ -11,7 +11,7 @@ from trunnion import tolerance
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.part.shape.refine_mesh import opened
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -21,7 +21,7 @@ def skin_of(
     part: Part,
     frame: Frame,
     chord: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     fine: Collection[int] | None = None,
 ) -> Skin:
     """Return the skin of a whole part in a frame, within a chord error (mm) on the faces of the tags in `fine` (all when not given).

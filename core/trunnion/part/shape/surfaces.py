@@ -28,7 +28,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 from trunnion.geometry.frame import Frame
 from trunnion.part.topology.canonical import xyz
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -233,7 +233,11 @@ def circle_edges(sc: float, uc: float, radius: float, start: float, end: float) 
 
 
 def strips_of(
-    guide: Guide, profile: Profile, edges: list[TrimEdge], side: float, progress: Progress = QUIET
+    guide: Guide,
+    profile: Profile,
+    edges: list[TrimEdge],
+    side: float,
+    progress: Progress = NO_PROGRESS,
 ) -> Floats | None:
     """Return the strips (m, 37) of a face trimmed by edges in (s, u), or None when the edges don't close."""
     ends = [u for e in edges for u in (e.u0, e.u1)]
@@ -340,7 +344,7 @@ class ContactFace:
 
 
 def level_face(
-    tag: int, z: float, edges: list[TrimEdge], side: float = 1.0, progress: Progress = QUIET
+    tag: int, z: float, edges: list[TrimEdge], side: float = 1.0, progress: Progress = NO_PROGRESS
 ) -> ContactFace:
     """Return a level face from its outline's edges in plan (s is x, u is y); side +1 looks up, -1 down."""
     boundary, outline = [], []
@@ -417,15 +421,15 @@ def _outline_box(outline: Floats) -> list[float]:
         arcs[:, EX1:ECX] - arcs[:, :EX1],
     )
     for x, y in ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)):
-        place = centre + radius[:, None] * [x, y]
-        away = place - arcs[:, :EX1]
+        position = centre + radius[:, None] * [x, y]
+        away = position - arcs[:, :EX1]
         left = chord[:, 0] * away[:, 1] - chord[:, 1] * away[:, 0]
-        points.append(place[left * arcs[:, ERADIUS] <= 0.0])
+        points.append(position[left * arcs[:, ERADIUS] <= 0.0])
     every = np.vstack(points)
     return [*every.min(axis=0).tolist(), *every.max(axis=0).tolist()]
 
 
-def surfaces_of(part: Part, frame: Frame, progress: Progress = QUIET) -> Surfaces:
+def surfaces_of(part: Part, frame: Frame, progress: Progress = NO_PROGRESS) -> Surfaces:
     """Return the trimmed faces of a part in a frame, its z the tool's axis."""
     shapes = [(tag, part.face_shape(tag)) for tag in part.tags]
     return surfaces_from(
@@ -647,8 +651,8 @@ def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list
         if curve.GetType() == Kind.GeomAbs_Line or BRep_Tool.Degenerated_s(edge):
             found += line_edges(_mapped(curve, np.array([first, last]), matrix, shift))
         elif curve.GetType() == Kind.GeomAbs_Circle and isometric:
-            place = curve.Circle()
-            centre = np.array([place.Location().X(), place.Location().Y()]) @ matrix + shift
+            position = curve.Circle()
+            centre = np.array([position.Location().X(), position.Location().Y()]) @ matrix + shift
             mid = (
                 _mapped(curve, np.array([first, 0.5 * (first + last), last]), matrix, shift)
                 - centre
@@ -661,7 +665,7 @@ def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list
                 else last - first
             )
             found += circle_edges(
-                centre[0], centre[1], place.Radius(), angles[0], angles[0] + sweep
+                centre[0], centre[1], position.Radius(), angles[0], angles[0] + sweep
             )
         else:
             found += _sampled(curve, first, last, matrix, shift)

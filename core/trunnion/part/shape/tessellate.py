@@ -14,14 +14,18 @@ from OCP.TopLoc import TopLoc_Location
 from trunnion.geometry.mesh import Mesh
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.identity import Shape
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 MANY = 2000
 """Points or triangles taken from the kernel between two looks at cancel: some milliseconds."""
 
 
 def tessellated(
-    shape: Shape, faces: Mapping[int, Shape], chord: float, angle: float, progress: Progress = QUIET
+    shape: Shape,
+    faces: Mapping[int, Shape],
+    chord: float,
+    angle: float,
+    progress: Progress = NO_PROGRESS,
 ) -> Mesh:
     """Return the triangles of a solid's faces (by tag), anticlockwise seen from outside.
 
@@ -43,10 +47,10 @@ def tessellated(
     return Mesh(np.concatenate(points), np.concatenate(triangles), np.concatenate(owners))
 
 
-def face_triangles(face: Shape, progress: Progress = QUIET) -> tuple[np.ndarray, np.ndarray]:
+def face_triangles(face: Shape, progress: Progress = NO_PROGRESS) -> tuple[np.ndarray, np.ndarray]:
     """Return the points (v, 3) and triangles (t, 3) that the mesher has left on a face, anticlockwise seen from outside."""
-    place = TopLoc_Location()
-    found = BRep_Tool.Triangulation_s(face, place)
+    location = TopLoc_Location()
+    found = BRep_Tool.Triangulation_s(face, location)
     if found is None or not found.NbTriangles():
         return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     points = np.array([found.Node(n).Coord() for n in _numbers(found.NbNodes(), progress)])
@@ -57,8 +61,8 @@ def face_triangles(face: Shape, progress: Progress = QUIET) -> tuple[np.ndarray,
         )
         - 1
     )
-    if not place.IsIdentity():
-        move = place.Transformation()
+    if not location.IsIdentity():
+        move = location.Transformation()
         turn = np.array([[move.Value(r, c) for c in range(1, 5)] for r in range(1, 4)])
         points = points @ turn[:, :3].T + turn[:, 3]
     return points, rows if _looks_out(face, found, points, rows) else rows[:, ::-1]
@@ -78,6 +82,6 @@ def _looks_out(face: Shape, found: Any, points: np.ndarray, rows: np.ndarray) ->
     corners = points[rows]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     largest = int(np.argmax((across * across).sum(axis=1)))
-    place = np.mean([found.UVNode(int(n) + 1).Coord() for n in rows[largest]], axis=0)
-    normal = TrimmedFace(face, 0).at(float(place[0]), float(place[1]))[1]
+    location = np.mean([found.UVNode(int(n) + 1).Coord() for n in rows[largest]], axis=0)
+    normal = TrimmedFace(face, 0).at(float(location[0]), float(location[1]))[1]
     return float(across[largest] @ normal) > 0.0

@@ -23,8 +23,8 @@ _SAMPLES, _ROUNDS = 33, 24
 """Points an edge is searched at for its extremes, and how often the span around the best is narrowed at most."""
 _NODES, _NEARER = 17, 4
 """Nodes on an edge, and steps towards the nearest point of its curve: they start beside it."""
-_PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
-"""Shares of a curve's parameters at which two curves in the same place are compared."""
+_SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Shares of a curve's parameters at which two curves in the same position are compared."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -80,10 +80,8 @@ def approximation_of(face: Shape) -> float:
             continue
         trim, curve = BRepAdaptor_Curve2d(edge, TopoDS.Face_s(face)), BRepAdaptor_Curve(edge)
         for t in np.linspace(trim.FirstParameter(), trim.LastParameter(), _NODES).tolist():
-            place = trim.Value(t)
-            most = max(
-                most, _distance(curve, np.array(surface.Value(place.X(), place.Y()).Coord()), t)
-            )
+            uv = trim.Value(t)
+            most = max(most, _distance(curve, np.array(surface.Value(uv.X(), uv.Y()).Coord()), t))
     return most
 
 
@@ -93,41 +91,46 @@ def _distance(curve: BRepAdaptor_Curve, node: Floats, t: float) -> float:
     nearest = np.inf
     for _ in range(_NEARER):
         curve.D1(t, point, along)
-        away, way = node - np.array(point.Coord()), np.array(along.Coord())
+        away, tangent = node - np.array(point.Coord()), np.array(along.Coord())
         nearest = min(nearest, float(np.linalg.norm(away)))
-        speed = float(way @ way)
+        speed = float(tangent @ tangent)
         if speed <= 0.0:
             break
-        t = min(max(t + float(away @ way) / speed, curve.FirstParameter()), curve.LastParameter())
+        t = min(
+            max(t + float(away @ tangent) / speed, curve.FirstParameter()), curve.LastParameter()
+        )
     return nearest
 
 
 def _bounding(face: Shape) -> list[BRepAdaptor_Curve]:
-    """Return the curves that bound a face, without its seams: one edge that is there twice, or (in IGES) two edges in the same place."""
+    """Return the curves that bound a face, without its seams: one edge that is there twice, or (in IGES) two edges in the same position."""
     curves = [
         BRepAdaptor_Curve(e)
         for e in edges_of(face)
         if not BRep_Tool.Degenerated_s(e) and not BRep_Tool.IsClosed_s(e, TopoDS.Face_s(face))
     ]
-    places = np.array(
+    positions = np.array(
         [
             [
                 c.Value(
                     c.FirstParameter() + share * (c.LastParameter() - c.FirstParameter())
                 ).Coord()
-                for share in _PLACES
+                for share in _SHARES
             ]
             for c in curves
         ]
-    ).reshape(-1, len(_PLACES), 3)
+    ).reshape(-1, len(_SHARES), 3)
     seam = set()
     for a, b in (
-        cKDTree(places[:, len(_PLACES) // 2]).query_pairs(tolerance.SLIVER)
+        cKDTree(positions[:, len(_SHARES) // 2]).query_pairs(tolerance.SLIVER)
         if len(curves) > 1
         else ()
     ):
         if (
-            min(np.abs(places[a] - places[b]).max(), np.abs(places[a] - places[b][::-1]).max())
+            min(
+                np.abs(positions[a] - positions[b]).max(),
+                np.abs(positions[a] - positions[b][::-1]).max(),
+            )
             < tolerance.SLIVER
         ):
             seam |= {a, b}
@@ -164,14 +167,14 @@ def _farthest(curves: list[BRepAdaptor_Curve], owner: Ints) -> list[Floats]:
             np.maximum.at(best, owner, most)
             for k in np.flatnonzero((slack > 0.0) & (most + slack > best[owner])):
                 n = int(np.argmax(sign * points[k][:_SAMPLES, axis]))
-                found = _closer(
+                found = _refined(
                     curves[k], at[k][max(n - 1, 0)], at[k][min(n + 1, _SAMPLES - 1)], axis, sign
                 )
                 points[k] = np.vstack([points[k], found])
     return points
 
 
-def _closer(
+def _refined(
     curve: BRepAdaptor_Curve, low: float, high: float, axis: int, sign: float
 ) -> tuple[float, float, float]:
     """Return the farthest point of a span that holds one extreme: there the curve runs across the axis (Newton, kept between halvings)."""

@@ -144,11 +144,11 @@ def _of_meridian(points: Floats, foot: Floats, axis: Floats) -> CanonicalSurface
         )
     slope, start = np.polyfit(height, rho, 1)
     if np.abs(rho - start - slope * height).max() < tolerance.FITTED:
-        way = 1.0 if slope > 0.0 else -1.0
+        sense = 1.0 if slope > 0.0 else -1.0
         return CanonicalSurface(
             kind="cone",
             axis_point=foot,
-            axis=way * axis,
+            axis=sense * axis,
             radius=float(start),
             minor=math.atan(abs(slope)),
         )
@@ -245,11 +245,11 @@ def fitted_curve(points: Floats) -> CanonicalCurve:
 
 def _cone(found: Any) -> CanonicalSurface:
     angle, axes = found.SemiAngle(), _axis(found)
-    way = 1.0 if angle > 0.0 else -1.0
+    sense = 1.0 if angle > 0.0 else -1.0
     return CanonicalSurface(
         kind="cone",
         axis_point=axes["axis_point"],
-        axis=way * axes["axis"],
+        axis=sense * axes["axis"],
         radius=found.RefRadius(),
         minor=abs(angle),
     )

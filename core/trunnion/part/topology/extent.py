@@ -18,7 +18,7 @@ from trunnion.part.shape.evaluate import evaluator_of
 from trunnion.part.topology.canonical import CanonicalSurface
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.trim import Trim
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 _GRID, _ZOOM, _ZOOMS, _STEPS = 13, 5, 4, 65
 Box = tuple[Floats, Floats]
@@ -48,7 +48,7 @@ def edge_extremes(adaptor: Any, points: Floats) -> Floats:
 
 
 def face_box(
-    view: TrimmedFace, surface: CanonicalSurface, boundary: Floats, progress: Progress = QUIET
+    view: TrimmedFace, surface: CanonicalSurface, boundary: Floats, progress: Progress = NO_PROGRESS
 ) -> Box:
     """Return the lowest and highest corner around a face; `boundary` (k, 3) holds its edges' extremes.
 
@@ -72,10 +72,10 @@ def _candidates(surface: CanonicalSurface) -> Iterator[Floats]:
         if size < tolerance.ANGLE:
             across = np.cross(surface.axis, np.eye(3)[np.argmin(np.abs(surface.axis))])
             size = float(np.linalg.norm(across))
-        for way in (1.0, -1.0):
+        for sense in (1.0, -1.0):
             yield (
                 surface.axis_point
-                + way * surface.radius * across / size
+                + sense * surface.radius * across / size
                 + surface.minor * direction
             )
 
@@ -87,10 +87,10 @@ def _with_candidates(view: TrimmedFace, boundary: Floats, points: Floats) -> Box
         axis=1
     )
     if beyond.any():
-        places = ShapeAnalysis_Surface(BRep_Tool.Surface_s(view.face))
+        projection = ShapeAnalysis_Surface(BRep_Tool.Surface_s(view.face))
         for point in points[beyond]:
-            place = places.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
-            if places.Gap() < tolerance.FITTED and view.holds(place.X(), place.Y()):
+            uv = projection.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
+            if projection.Gap() < tolerance.FITTED and view.holds(uv.X(), uv.Y()):
                 low, high = np.minimum(low, point), np.maximum(high, point)
     return low, high
 
@@ -101,18 +101,18 @@ def _searched(view: TrimmedFace, boundary: Floats, progress: Progress) -> Box:
     step = np.array([(u1 - u0) / _GRID, (v1 - v0) / _GRID])
     trim, evaluate = Trim(view, progress), evaluator_of(view.adaptor)
 
-    def inside(places: Floats) -> tuple[Floats, Floats]:
-        kept = places[trim.holds(places)]
+    def inside(uv: Floats) -> tuple[Floats, Floats]:
+        kept = uv[trim.holds(uv)]
         return kept, evaluate(kept)[:, 0]
 
-    places, points = inside(np.array(view.grid(_GRID)))
+    projection, points = inside(np.array(view.grid(_GRID)))
     found = [boundary, points]
     for axis in range(3):
-        for way in (1.0, -1.0):
-            here, reach = places, step
+        for sense in (1.0, -1.0):
+            here, reach = projection, step
             best = points
             for _ in range(_ZOOMS if len(points) else 0):
-                centre = here[int(np.argmax(way * best[:, axis]))]
+                centre = here[int(np.argmax(sense * best[:, axis]))]
                 share = np.linspace(-1.0, 1.0, _ZOOM)
                 around = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
                 here, best = inside(np.clip(centre + around * reach, [u0, v0], [u1, v1]))

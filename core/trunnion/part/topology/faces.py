@@ -56,22 +56,22 @@ class TrimmedFace:
         size = normal.Magnitude()
         if size <= tolerance.PARAMETRIC * max(du.Magnitude(), dv.Magnitude(), tolerance.COINCIDENT):
             u0, u1, v0, v1 = self.bounds()
-            beside = (
+            nearby = (
                 u + tolerance.ANGLE * (0.5 * (u0 + u1) - u),
                 v + tolerance.ANGLE * (0.5 * (v0 + v1) - v),
             )
-            self.adaptor.D1(*beside, gp_Pnt(), du, dv)
+            self.adaptor.D1(*nearby, gp_Pnt(), du, dv)
             normal = du.Crossed(dv)
             size = normal.Magnitude() or 1.0
         return np.array(point.Coord()), np.array(normal.Coord()) * (self.side / size)
 
-    def evaluated(self, places: list[tuple[float, float]]) -> tuple[Floats, Floats]:
-        """Return points and outward unit normals (k, 3) at places (u, v)."""
+    def evaluated(self, uv: list[tuple[float, float]]) -> tuple[Floats, Floats]:
+        """Return points and outward unit normals (k, 3) at uv (u, v)."""
         if self.plane_normal is not None:
-            return np.array([self.adaptor.Value(u, v).Coord() for u, v in places]), np.tile(
-                self.plane_normal, (len(places), 1)
+            return np.array([self.adaptor.Value(u, v).Coord() for u, v in uv]), np.tile(
+                self.plane_normal, (len(uv), 1)
             )
-        both = [self.at(u, v) for u, v in places]
+        both = [self.at(u, v) for u, v in uv]
         return np.array([p for p, _ in both]), np.array([n for _, n in both])
 
     def grid(self, steps: int) -> list[tuple[float, float]]:

@@ -35,7 +35,7 @@ from trunnion.part.topology.extent import edge_extremes, face_box
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.identity import Shape
 from trunnion.part.topology.measure import ACCURACY
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 _GRIDS, _PLANE_GRIDS = (5, 13, 31), (4, 13, 31)
 _MIN_SAMPLES, _MIN_PLANE_SAMPLES = 9, 4
@@ -48,7 +48,7 @@ class Coedge:
     """One edge as a face uses it: its number, direction (+1 as the curve runs, -1 against it) and loop (0 the outer one)."""
 
     edge: int
-    way: float
+    sense: float
     loop: int
 
 
@@ -74,7 +74,7 @@ class TopologyEdge:
 
 
 def face_graph(
-    shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress: Progress = QUIET
+    shape: Shape, faces: Mapping[int, Shape], n_faces: int, progress: Progress = NO_PROGRESS
 ) -> FaceGraph:
     """Return the graph of a solid's faces (by tag); rows of tags that aren't there have area 0, no samples and no edges.
 
@@ -154,7 +154,7 @@ def _edges(
         rim = rims.setdefault(view.row, [])
         for coedge in coedges(view.face, index):
             if coedge.edge in edges:
-                edges[coedge.edge].users.append((view, coedge.way, coedge.loop))
+                edges[coedge.edge].users.append((view, coedge.sense, coedge.loop))
                 rim.append(edges[coedge.edge])
     return list(edges.values()), rims
 
@@ -207,10 +207,10 @@ def _joints(edge: TopologyEdge) -> list[FaceAdjacency]:
     curve, tangent = recognised_curve(edge.adaptor), _tangent(edge)
     length = _length(edge, curve)
     found = []
-    for (a, way, loop_a), (b, _, loop_b) in pairs:
-        normal_a, normal_b = _normal_beside(edge, a), _normal_beside(edge, b)
+    for (a, sense, loop_a), (b, _, loop_b) in pairs:
+        normal_a, normal_b = _normal_at_edge(edge, a), _normal_at_edge(edge, b)
         turn = math.atan2(
-            float(np.cross(normal_a, normal_b) @ tangent) * way, float(normal_a @ normal_b)
+            float(np.cross(normal_a, normal_b) @ tangent) * sense, float(normal_a @ normal_b)
         )
         convexity = SMOOTH if abs(turn) < tolerance.TANGENT else CONVEX if turn > 0.0 else CONCAVE
         found.append(
@@ -239,11 +239,11 @@ def _tangent(edge: TopologyEdge) -> Floats:
     return tangent / size
 
 
-def _normal_beside(edge: TopologyEdge, view: TrimmedFace) -> Floats:
+def _normal_at_edge(edge: TopologyEdge, view: TrimmedFace) -> Floats:
     if view.plane_normal is not None:
         return view.plane_normal
-    place = BRepAdaptor_Curve2d(edge.edge, view.face).Value(edge.middle)
-    return view.at(place.X(), place.Y())[1]
+    uv = BRepAdaptor_Curve2d(edge.edge, view.face).Value(edge.middle)
+    return view.at(uv.X(), uv.Y())[1]
 
 
 def _length(edge: TopologyEdge, curve: CanonicalCurve) -> float:
@@ -294,7 +294,7 @@ def _face_row(view: TrimmedFace, rim: list[TopologyEdge], progress: Progress) ->
         np.concatenate([e.extremes for e in rim]) if rim else np.empty((0, 3)),
         progress,
     )
-    surface = _beside(surface, points[best])
+    surface = _anchored(surface, points[best])
     return FaceAttributes(
         surface=surface,
         area=_area(view),
@@ -321,14 +321,14 @@ def _samples(view: TrimmedFace, progress: Progress) -> tuple[Floats, Floats]:
     if len(most) > _GRIDS[0] ** 2:
         most = most[:: math.ceil(len(most) / _GRIDS[0] ** 2)]
     if len(most) < wanted:
-        most = most + _beside_rim(view, wanted - len(most))
+        most = most + _near_rim(view, wanted - len(most))
     if not most:
         u0, u1, v0, v1 = view.bounds()
         most = [(0.5 * (u0 + u1), 0.5 * (v0 + v1))]
     return view.evaluated(most)
 
 
-def _beside_rim(view: TrimmedFace, wanted: int) -> list[tuple[float, float]]:
+def _near_rim(view: TrimmedFace, wanted: int) -> list[tuple[float, float]]:
     """Return up to `wanted` positions (u, v) a little inside the boundary: a thin face falls between the cells of any grid."""
     found: list[tuple[float, float]] = []
     around = TopExp_Explorer(view.face, TopAbs_EDGE)
@@ -367,7 +367,7 @@ def _area(view: TrimmedFace) -> float:
     return abs(float(found.Mass()))
 
 
-def _beside(surface: CanonicalSurface, near: Floats) -> CanonicalSurface:
+def _anchored(surface: CanonicalSurface, near: Floats) -> CanonicalSurface:
     """Return the surface with its axis point beside a point of the face, so that it doesn't depend on how the file wrote it."""
     if surface.kind not in ("cylinder", "cone"):
         return surface

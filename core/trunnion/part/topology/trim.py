@@ -1,5 +1,5 @@
-"""What a face's trim holds, for many places at once: its outline as short pieces in the face's own parameters decides nearly all of them,
-and the CAD kernel those beside it."""
+"""What a face's trim holds, for many positions at once: its outline as short pieces in the face's own parameters decides nearly all of
+them, and the CAD kernel those beside it."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.kernels.outline import IN, NEAR
 from trunnion.geometry.outlines import Outlines
 from trunnion.part.topology.faces import TrimmedFace
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SAG = 1e-4
 """Of the face's size in its parameters: how far a piece may be from the outline."""
 FEW = 40
-"""Fewer places are classified by the kernel alone: that is as quick as opening the outline."""
+"""Fewer positions are classified by the kernel alone: that is as quick as opening the outline."""
 HALVINGS = 8
 TRIED = 8
-"""Places along both sides of a grid at which the outline must say the same as the kernel."""
+"""Positions along both sides of a grid at which the outline must say the same as the kernel."""
 
 
 class Trim:
     """The trimmed area of a face; `progress` is looked at while the kernel is queried."""
 
-    def __init__(self, view: TrimmedFace, progress: Progress = QUIET) -> None:
+    def __init__(self, view: TrimmedFace, progress: Progress = NO_PROGRESS) -> None:
         self._view, self._progress = view, progress
         u0, u1, v0, v1 = view.bounds()
         self._turns = np.array([view.adaptor.IsUPeriodic(), view.adaptor.IsVPeriodic()])
@@ -39,23 +39,25 @@ class Trim:
         self._outlines: Outlines | None = None
         self._tried = False
 
-    def holds(self, places: Floats) -> Bools:
-        """Return which places (k, 2) lie inside."""
-        if not self._tried and len(places) > FEW:
+    def holds(self, uv: Floats) -> Bools:
+        """Return which uv (k, 2) lie inside."""
+        if not self._tried and len(uv) > FEW:
             self._tried = True
             self._outlines = self._opened()
         if self._outlines is None:
-            return self._by_kernel(places)
-        share = (places - self._low) / self._size
-        told = self._outlines.within(share)
-        # The kernel brings places beyond a seam back; it is queried for those as well.
-        unsure = (told == NEAR) | (((share < 0.0) | (share > 1.0)) & self._turns).any(axis=1)
-        inside = told == IN
-        inside[unsure] = self._by_kernel(places[unsure])
+            return self._by_kernel(uv)
+        share = (uv - self._low) / self._size
+        position_class = self._outlines.within(share)
+        # The kernel brings positions beyond a seam back; it is queried for those as well.
+        unsure = (position_class == NEAR) | (((share < 0.0) | (share > 1.0)) & self._turns).any(
+            axis=1
+        )
+        inside = position_class == IN
+        inside[unsure] = self._by_kernel(uv[unsure])
         return inside
 
-    def _by_kernel(self, places: Floats) -> Bools:
-        return np.array([self._holds(u, v) for u, v in places.tolist()], dtype=bool)
+    def _by_kernel(self, uv: Floats) -> Bools:
+        return np.array([self._holds(u, v) for u, v in uv.tolist()], dtype=bool)
 
     def _holds(self, u: float, v: float) -> bool:
         self._progress.check()
@@ -78,11 +80,13 @@ class Trim:
         made = Outlines.of(np.vstack(pieces), 3.0 * SAG)
         share = (np.arange(TRIED) + 0.5) / TRIED
         grid = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
-        told = made.within(grid)
-        sure = told != NEAR
+        position_class = made.within(grid)
+        sure = position_class != NEAR
         return (
             made
-            if ((told[sure] == IN) == self._by_kernel(self._low + grid[sure] * self._size)).all()
+            if (
+                (position_class[sure] == IN) == self._by_kernel(self._low + grid[sure] * self._size)
+            ).all()
             else None
         )
 

@@ -25,19 +25,19 @@ FILE, CYLINDER = "file", "cylinder"
 
 def blank_of(session: Session, context: Context, frame: Frame, progress: Progress) -> Blank:
     """Return the blank by the session's settings, in a frame; raise `BadInput` when there is no such one."""
-    chosen = checked(choose(BlankSettings, session.choices))
-    if chosen.material not in context.shop.materials:
+    settings = checked(choose(BlankSettings, session.choices))
+    if settings.material not in context.shop.materials:
         raise BadInput(
-            f"there is no material {chosen.material} in the catalogue; known: {', '.join(sorted(context.shop.materials))}"
+            f"there is no material {settings.material} in the catalogue; known: {', '.join(sorted(context.shop.materials))}"
         )
-    material = context.shop.materials[chosen.material]
-    if chosen.kind == FILE:
-        return _read(session, frame, material, chosen.file, progress)
+    material = context.shop.materials[settings.material]
+    if settings.kind == FILE:
+        return _read(session, frame, material, settings.file, progress)
     low, high = context.box(frame)
-    if chosen.kind == CYLINDER:
+    if settings.kind == CYLINDER:
         points = frame.to_local(context.part.mesh().points)
-        return make_bar(frame, low, high, points, material, chosen)
-    return make_blank(frame, low, high, material, chosen)
+        return make_bar(frame, low, high, points, material, settings)
+    return make_blank(frame, low, high, material, settings)
 
 
 def _read(
@@ -62,10 +62,10 @@ def source_of(session: Session) -> str:
 
     A file that is gone counts as the one that the blank was read from: the session has all of it.
     """
-    chosen = choose(BlankSettings, session.choices)
-    if chosen.kind != FILE:
+    settings = choose(BlankSettings, session.choices)
+    if settings.kind != FILE:
         return ""
-    return file_digest(chosen.file) or (session.blank.source if session.blank is not None else "")
+    return file_digest(settings.file) or (session.blank.source if session.blank is not None else "")
 
 
 def file_digest(file: str) -> str:
@@ -91,12 +91,12 @@ def too_small(blank: Blank, context: Context) -> tuple[Finding, ...]:
     if inward.min() >= -tolerance.SEW:
         return ()
     worst = int(np.argmin(inward))
-    place = ", ".join(f"{v:.2f}" for v in points[worst])
+    position = ", ".join(f"{v:.2f}" for v in points[worst])
     away = f"by {-inward[worst]:.2f} mm" if np.isfinite(inward[worst]) else "wholly"
     return (
         error(
             "blank.too-small",
-            f"the part stands out of its blank {away} at ({place})",
+            f"the part stands out of its blank {away} at ({position})",
             remedy="choose a larger blank, or one in the part's coordinates",
         ),
     )

@@ -21,8 +21,8 @@ from trunnion.model.fixture import Fixture
 from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
-from trunnion.progress import QUIET, Progress
-from trunnion.toolpath.contact_passes.axis_search import roomy
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.toolpath.contact_passes.axis_search import thickened
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -50,14 +50,14 @@ class PartClearance:
         setup: Frame,
         machine: Machine,
         fixtures: Sequence[Fixture] = (),
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> None:
         self._part, self._skin, self._cutting, self._setup = part, skin, cutting, setup
         self._machine, self._fixtures, self.progress = machine, tuple(fixtures), progress
 
     def __call__(self, tool: Tool) -> ToolClearanceQuery:
         """Return the clearance query of a tool."""
-        return ToolClearanceQuery(self, roomy(tool, tolerance.HOLDER_ROOM))
+        return ToolClearanceQuery(self, thickened(tool, tolerance.HOLDER_CLEARANCE))
 
     def holds(self, axis: Floats) -> Bools:
         """Return which tool axes (k, 3), in the cutting frame, the machine can hold within the limits of its rotary axes."""
@@ -73,10 +73,10 @@ class PartClearance:
         for start in range(0, len(moves), BATCH):
             self.progress.check()
             some = moves.some(slice(start, start + BATCH))
-            clear[start : start + BATCH] = self._asked(some)
+            clear[start : start + BATCH] = self._queried(some)
         return clear
 
-    def _asked(self, moves: Moves) -> Bools:
+    def _queried(self, moves: Moves) -> Bools:
         from trunnion.verify.threads import in_parallel
 
         clear, contact = np.zeros(len(moves), dtype=bool), self._contact
@@ -86,7 +86,7 @@ class PartClearance:
                 moves.some(slice(first, last)), tolerance.FINISH_GOUGE
             )
 
-        in_parallel(work, len(moves), CHUNK, QUIET, "Looking for room for a leaning tool")
+        in_parallel(work, len(moves), CHUNK, NO_PROGRESS, "Looking for room for a leaning tool")
         return clear
 
     @cached_property

@@ -106,12 +106,15 @@ def recognised(session: Session, context: Context, progress: Progress) -> Recogn
     unserved = () if rated[0].served else (_no_family(rated[0]),)
     if not best.served:
         return _nothing(best, context, unserved)
-    chosen = checked(choose(best.kind.settings, session.choices))
-    found: Recognition = best.kind.recognize(graph, context.part, chosen, progress)
+    settings = checked(choose(best.kind.settings, session.choices))
+    found: Recognition = best.kind.recognize(graph, context.part, settings, progress)
     poor = _unexplained(best, found)
     if wanted == AUTOMATIC:
         return _stopped(
-            replace(found, taken_for=best.taken(), findings=(*found.findings, _told(best))), poor
+            replace(
+                found, taken_for=best.taken(), findings=(*found.findings, _choice_finding(best))
+            ),
+            poor,
         )
     return replace(
         found,
@@ -127,7 +130,7 @@ def _nothing(best: Rated, context: Context, why: Sequence[Finding]) -> Recogniti
         unexplained=tuple(context.part.tags),
         unexplained_share=1.0,
         taken_for=best.taken(),
-        findings=(_told(best),),
+        findings=(_choice_finding(best),),
     )
     return _stopped(found, why)
 
@@ -141,7 +144,7 @@ def _stopped(found: Recognition, why: Sequence[Finding]) -> Recognition:
     )
 
 
-def _told(best: Rated) -> Finding:
+def _choice_finding(best: Rated) -> Finding:
     return info("recognize.family", f"taken for {best.taken()}")
 
 

@@ -11,7 +11,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.recognize.contract import exclusive_kinds
 
 
-def with_features_by_hand(before: Recognition | None, found: Recognition) -> Recognition:
+def with_manual_features(before: Recognition | None, found: Recognition) -> Recognition:
     """Return what was found with the features that a person made or changed in place of those that claim most of their faces, and
     without those that claim most of the faces of a deleted one. Faces that lose their feature become unexplained.
 
@@ -38,7 +38,7 @@ def with_features_by_hand(before: Recognition | None, found: Recognition) -> Rec
         kept = tuple(sorted(kept, key=lambda f: f.id))
     loose = there - {tag for f in kept for tag in f.tags}
     deleted = [f for f in found.features if _claims_most(f, [set(tags) for tags in before.removed])]
-    told = [
+    notes = [
         info(
             "recognize.deleted",
             f"{f.id} was deleted by hand and is not taken up again",
@@ -50,7 +50,7 @@ def with_features_by_hand(before: Recognition | None, found: Recognition) -> Rec
     return replace(
         found.with_unexplained(loose),
         features=kept,
-        findings=(*found.findings, *told),
+        findings=(*found.findings, *notes),
         removed=before.removed,
     )
 
@@ -110,7 +110,7 @@ def free_id(kind: str, taken: set[str]) -> str:
     return f"{kind}-{number:02}"
 
 
-def with_operations_by_hand(before: ProcessTree | None, made: ProcessTree) -> ProcessTree:
+def with_manual_operations(before: ProcessTree | None, made: ProcessTree) -> ProcessTree:
     """Return the plan that was made with the operations that a person changed as they were, and without those that were deleted."""
     if before is None:
         return made

@@ -16,7 +16,7 @@ from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.planning.manual_edits import free_id, without_faces
 from trunnion.pipeline.steps import measured_anew
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import exclusive_kinds, sharing_families
 
 if TYPE_CHECKING:
@@ -26,7 +26,9 @@ LOCAL, REMAINING = "local", "remaining"
 """What may be exported beside groups by their id: all local features, and all other faces of the part."""
 
 
-def with_cut(engine: Engine, session: Session, cut: Cut, progress: Progress = QUIET) -> Session:
+def with_cut(
+    engine: Engine, session: Session, cut: Cut, progress: Progress = NO_PROGRESS
+) -> Session:
     """Return the session after one more cut of a face: recognition is stale, and the engine's mesh of it has the new faces.
 
     Raises `BadInput` when the part has no such face or the cut doesn't divide it.
@@ -35,7 +37,7 @@ def with_cut(engine: Engine, session: Session, cut: Cut, progress: Progress = QU
 
 
 def without_cut(
-    engine: Engine, session: Session, number: int, progress: Progress = QUIET
+    engine: Engine, session: Session, number: int, progress: Progress = NO_PROGRESS
 ) -> Session:
     """Return the session without one of its cuts, counted from 0; raise `BadInput` when a later cut needs it."""
     if not 0 <= number < len(session.cuts):

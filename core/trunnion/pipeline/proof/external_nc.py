@@ -39,12 +39,12 @@ def verify_texts(
         raise BadCall(
             f"{len(files)} programs given, but the part has {len(session.process.setups)} setups"
         )
-    chosen = checked(choose(PostSettings, session.choices))
+    settings = checked(choose(PostSettings, session.choices))
     machines = engine.context_of(session).shop.machines
     posted = [
         PostedFile(
             suffix=file.name,
-            dialect=dialect_of(setup, chosen, machines),
+            dialect=dialect_of(setup, settings, machines),
             setup=setup.name,
             text=text_of(file),
         )

@@ -15,7 +15,7 @@ from trunnion.model.motion.program import Program, ProgramSection
 from trunnion.model.session import Session
 from trunnion.pipeline.engine import Engine
 from trunnion.pipeline.proof.posted_programs import read_back
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -50,7 +50,7 @@ def measure_fine(
     session: Session,
     faces: Sequence[int],
     spacing: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> FineResult:
     """Return what the posted programs of a session leave on faces; `spacing` mm is how far apart it begins to look."""
     from trunnion.part.shape.exact import ExactFace
@@ -78,11 +78,11 @@ def measure_fine(
     return FineResult(
         faces=tuple(faces),
         scallop=found.scallop.value,
-        scallop_at=home.to_world(found.scallop.place),
+        scallop_at=home.to_world(found.scallop.position),
         gouge=found.gouge.value,
-        gouge_at=home.to_world(found.gouge.place),
+        gouge_at=home.to_world(found.gouge.position),
         step=found.step.value,
-        step_at=home.to_world(found.step.place),
+        step_at=home.to_world(found.step.position),
         lower=lower,
         bound=found.bound,
     )
@@ -114,18 +114,18 @@ def _unit(axes: Floats) -> Floats:
 def fine_dict(found: FineResult) -> dict[str, object]:
     """Return the figures as JSON data."""
 
-    def place(at: Floats) -> list[float] | None:
+    def position(at: Floats) -> list[float] | None:
         return [float(v) + 0.0 for v in at] if np.isfinite(at).all() else None
 
     return {
         "faces": [f"face {tag}" for tag in found.faces],
         "bound_mm": found.bound,
         "scallop_mm": found.scallop,
-        "scallop_at": place(found.scallop_at),
+        "scallop_at": position(found.scallop_at),
         "gouge_mm": found.gouge,
-        "gouge_at": place(found.gouge_at),
+        "gouge_at": position(found.gouge_at),
         "step_mm": found.step,
-        "step_at": place(found.step_at),
+        "step_at": position(found.step_at),
         "step_below": found.lower,
     }
 

@@ -24,7 +24,7 @@ from trunnion.model.session import PostedFile, Session
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.proof.posted_programs import machine_of, programs_of, read_back
 from trunnion.post.release import release
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import checked, choose, digest
 from trunnion.verify.judge.setups import bundles_of
 from trunnion.verify.machine.times import seconds_of
@@ -57,7 +57,11 @@ class Playback:
     """A plan that can be looked at from its first block to its last. Not for several threads at a time."""
 
     def __init__(
-        self, session: Session, context: Context, cell: float = 0.0, progress: Progress = QUIET
+        self,
+        session: Session,
+        context: Context,
+        cell: float = 0.0,
+        progress: Progress = NO_PROGRESS,
     ) -> None:
         """`cell` mm is the fineness of the stock; 0: as fine as a picture shows. Raises `BadCall` where nothing can be played."""
         if session.process is None or session.blank is None:
@@ -100,11 +104,11 @@ class Playback:
         """Number of blocks of all programs."""
         return len(self.timeline)
 
-    def at(self, position: float, progress: Progress = QUIET) -> Moment:
+    def at(self, position: float, progress: Progress = NO_PROGRESS) -> Moment:
         """Return the stock at a position (blocks done, from 0 to `n_blocks`)."""
         return self.towards(position, np.inf, progress)
 
-    def towards(self, position: float, seconds: float, progress: Progress = QUIET) -> Moment:
+    def towards(self, position: float, seconds: float, progress: Progress = NO_PROGRESS) -> Moment:
         """Return the stock at a position, or on the way there when it is not reached in some seconds: call again to go on."""
         wanted = min(max(float(position), 0.0), float(self.n_blocks))
         if wanted < self._position:

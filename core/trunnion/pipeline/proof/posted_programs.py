@@ -19,9 +19,9 @@ from trunnion.pipeline.work_position import work_positions_of
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
 from trunnion.post.settings import OF_MACHINE, PostSettings
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import checked, choose
-from trunnion.shop.kinematics import Places
+from trunnion.shop.kinematics import WorkPositions
 from trunnion.verify.settings import ProofSettings
 
 
@@ -52,12 +52,17 @@ def programs_of(session: Session) -> tuple[Program, ...]:
 
 
 def post_texts(
-    session: Session, header: Header, machines: Mapping[str, Machine], progress: Progress = QUIET
+    session: Session,
+    header: Header,
+    machines: Mapping[str, Machine],
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[PostedFile, ...]:
     """Return the texts of every program: one for each setup in the dialect of its machine's control, and the CL of all setups."""
-    chosen, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
-    programs, places = programs_of(session), work_positions_of(session, machines)
-    posted = [_posted(p, header, chosen, machines, places) for p in progress.each(programs)]
+    settings, cl = checked(choose(PostSettings, session.choices)), registry.get("dialects", "apt")()
+    programs, work_positions = programs_of(session), work_positions_of(session, machines)
+    posted = [
+        _posted(p, header, settings, machines, work_positions) for p in progress.each(programs)
+    ]
     progress.check()
     if programs:
         posted.append(
@@ -65,7 +70,7 @@ def post_texts(
                 suffix=cl.suffix,
                 dialect=cl.name,
                 setup="",
-                text=cl.write(programs, header, chosen, places),
+                text=cl.write(programs, header, settings, work_positions),
             )
         )
     return tuple(posted)
@@ -74,24 +79,24 @@ def post_texts(
 def _posted(
     program: Program,
     header: Header,
-    chosen: PostSettings,
+    settings: PostSettings,
     machines: Mapping[str, Machine],
-    places: Places,
+    work_positions: WorkPositions,
 ) -> PostedFile:
     setup = program.setup
-    dialect = registry.get("dialects", dialect_of(setup, chosen, machines))()
+    dialect = registry.get("dialects", dialect_of(setup, settings, machines))()
     return PostedFile(
         suffix=f"{setup.name}.{dialect.suffix}",
         dialect=dialect.name,
         setup=setup.name,
-        text=dialect.write((program,), header, chosen, places),
+        text=dialect.write((program,), header, settings, work_positions),
     )
 
 
-def dialect_of(setup: Setup, chosen: PostSettings, machines: Mapping[str, Machine]) -> str:
+def dialect_of(setup: Setup, settings: PostSettings, machines: Mapping[str, Machine]) -> str:
     """Return the name of the dialect that a setup's program is written in: the one chosen for all, else that of its machine's control."""
-    if chosen.dialect != OF_MACHINE:
-        return chosen.dialect
+    if settings.dialect != OF_MACHINE:
+        return settings.dialect
     return machine_of(setup, machines).control
 
 
@@ -109,15 +114,15 @@ def read_back(
     session: Session,
     posted: tuple[PostedFile, ...],
     machines: Mapping[str, Machine],
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Program, ...]:
     """Return the motions that the posted texts of the control's dialect say, setup by setup."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
-    tools, places = session.process.tools(), work_positions_of(session, machines)
+    tools, work_positions = session.process.tools(), work_positions_of(session, machines)
     read = (
         read_program(
-            f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), places
+            f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), work_positions
         )
         for f in progress.each(posted)
         if f.setup
@@ -167,10 +172,10 @@ def errors_of_part(session: Session) -> tuple[Finding, ...]:
 
 def errors_before(session: Session) -> tuple[Finding, ...]:
     """Return the errors that the part and the steps before the proof have reported."""
-    told = (
+    notes = (
         f for step, record in session.records.items() if step != "verify" for f in record.findings
     )
-    return errors_of_part(session) + tuple(f for f in told if f.severity is Severity.ERROR)
+    return errors_of_part(session) + tuple(f for f in notes if f.severity is Severity.ERROR)
 
 
 def held_back(verdict: Verdict, errors: Sequence[Finding]) -> Verdict:

@@ -165,7 +165,7 @@ def cutting_data(
     """Return the data of an operation of `kind` that cuts `depth` ap and `width` ae (mm), with a sentence for each number.
 
     Feeds follow from the material's table, chip thinning and slenderness; then spindle, feed and power of the machine bound them.
-    `widest` (mm) is what may stand in front of the cutter at once, where the area says so.
+    `widest` (mm) is what may be in front of the cutter at once, where the area says so.
     """
     rough = kind in ROUGHING
     speed = (material.speed_rough if rough else material.speed_finish) * settings.speed_share

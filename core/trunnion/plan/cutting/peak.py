@@ -50,11 +50,11 @@ def with_peak(
     `earlier` are the operations before it in its setup, `choices` a session's settings by full key. Data set by hand keep their numbers.
     """
     strategy = registry.get("strategies", operation.strategy)
-    chosen = checked(choose(strategy.settings, {**choices, **operation.choices}))
+    settings = checked(choose(strategy.settings, {**choices, **operation.choices}))
     before = _roughed_by(operation, earlier)
 
     def peak(data: CuttingData) -> Peak:
-        met = strategy.meets(operation.tool, data, chosen, before)
+        met = strategy.meets(operation.tool, data, settings, before)
         return Peak(met=met, power=_power(operation, data, met, material))
 
     data = operation.data

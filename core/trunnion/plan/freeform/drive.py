@@ -1,7 +1,7 @@
 """What a surface strategy is driven by: the faces to finish, the skin of the whole part, and the direction the tool comes from.
 
 Everything here lies in the CUTTING FRAME: its z is the direction that the tool comes from. For most operations that is the setup's own
-frame; an indexed one (3 + 2 axes) has a frame that stands tilted in the setup's. Strategies never know the difference: their paths are
+frame; an indexed one (3 + 2 axes) has a frame that is tilted in the setup's. Strategies never know the difference: their paths are
 turned into the setup's frame afterwards (`pipeline.making`).
 """
 
@@ -26,11 +26,11 @@ class ExactFace(Protocol):
     def bounds(self) -> tuple[float, float, float, float]:
         """Return the least and greatest u and v."""
 
-    def inside(self, places: Floats) -> Bools:
-        """Say which places (k, 2) lie inside the trim."""
+    def inside(self, uv: Floats) -> Bools:
+        """Return which uv (k, 2) lie inside the trim."""
 
-    def at(self, places: Floats) -> ExactPoints:
-        """Return the surface at places (k, 2)."""
+    def at(self, uv: Floats) -> ExactPoints:
+        """Return the surface at uv (k, 2)."""
 
 
 class ExactPoints(Protocol):
@@ -67,9 +67,9 @@ class SurfaceDrive:
 
     `faces`: tags to be finished; `exact` their exact surfaces in the same order; `skin`: the whole part. `low`, `high` (3,): the box of the
     blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
-    in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` tells all of this apart. `ask`: who
-    says for a tool whether poses are clear of part and fixtures and within the machine's rotary limits (`pipeline.planning.clearance`);
-    None where no tool may lean.
+    in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` identifies all of this. `query_for`
+    returns a tool's clearance query: which poses are clear of part and fixtures and within the machine's rotary limits
+    (`pipeline.planning.clearance`); None where no tool may lean.
     """
 
     feature: str
@@ -85,9 +85,9 @@ class SurfaceDrive:
     height: float
     digest: str
     earlier: Tool | None = None
-    ask: Callable[[Tool], ClearanceQuery] | None = None
+    query_for: Callable[[Tool], ClearanceQuery] | None = None
 
     @property
     def is_empty(self) -> bool:
-        """Never: faces are finished whatever stands over them."""
+        """Never: faces are finished whatever is over them."""
         return False

@@ -17,7 +17,7 @@ UPRIGHT: Direction = (0.0, 0.0, 1.0)
 
 
 def is_upright(direction: Direction) -> bool:
-    """Say whether a direction is the setup's z."""
+    """Return whether a direction is the setup's z."""
     return direction[2] > np.cos(tolerance.ANGLE)
 
 

@@ -11,7 +11,7 @@ SCALLOP, ALLOWANCE, BOTTOM, CELL = (
     "surface.cell",
 )
 """Keys of an operation's choices, mm: the scallop height it is wanted with, what it leaves on purpose, the height in the cutting frame that
-it goes down to, and the distance of the places at which the part's height is measured."""
+it goes down to, and the distance of the positions at which the part's height is measured."""
 EARLIER = "surface.earlier"
 """Key of an operation's choices: the name of the cutter that finished its faces before."""
 

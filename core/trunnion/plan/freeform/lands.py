@@ -24,31 +24,31 @@ from trunnion.plan.freeform.keys import number
 from trunnion.plan.freeform.roughing.heights import region_of
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SKIM = 2e-4
-"""mm: how far above a land what stands in the way is looked for. An end mill enters a fillet that begins on the land by no more than this,
+"""mm: how far above a land what is in the way is looked for. An end mill enters a fillet that begins on the land by no more than this,
 and goes on over its rim by sqrt(2 R SKIM), less than a stepover of any ball."""
 SIDE = 1.0
-"""mm: what stands higher than this over a land's rim is a side; a fillet that is still lower there is cut along by the rim as it comes."""
+"""mm: what is higher than this over a land's rim is a side; a fillet that is still lower there is cut along by the rim as it comes."""
 STEP = 2.0
 """mm: heights that shank and holder are kept off the part at go in such steps, always down: few sections serve many tools."""
 NECK = 1.0
-"""mm that an end mill keeps off unfinished sides that are higher than its flutes: in corners more stands there than roughing's allowance,
+"""mm that an end mill keeps off unfinished sides that are higher than its flutes: in corners more is there than roughing's allowance,
 and a neck does not cut."""
 UNDER = math.sin(math.radians(0.01))
 """Part along -z of the normal from which on a triangle hangs over: 1 um in 6 mm."""
 LAP, EVEN = 1e-3, 0.02
 """mm that shadows of neighbouring triangles overlap by, and that the rim of them all is evened by, always outwards."""
 TOUCHING = 0.02
-"""mm: a disc that is smaller by this stands free wherever the cutter only touches what is beside it."""
+"""mm: a disc that is smaller by this is free wherever the cutter only touches what is beside it."""
 HAIR = 0.02
 """mm: half the width up to which what is left along the rim of what is done is none."""
-PLACES = 0.5
-"""mm between the places along a rim that are asked whether a cutter stands free there."""
+RIM_SPACING = 0.5
+"""mm between the positions along a rim at which it is tested whether a cutter is free."""
 LAND, REST_LAND = "land", "rest_land"
 """Kinds of operations on lands: with a large end mill, and with another one of what that left."""
-STOCK, BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL = (
+STOCK, LATERAL, AROUND_TOOL, ABOVE_TOOL = (
     "surface.stock",
     "surface.beside",
     "surface.around",
@@ -68,10 +68,10 @@ class Land:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LandClearances:
-    """What an end mill keeps, in mm: `beside` from sides of the part that are not finished yet, `around` shank and holder from the part all
-    round, `above` them over it."""
+    """What an end mill keeps, in mm: `lateral` from sides of the part that are not finished yet, `around` shank and holder from the part
+    all round, `above` them over it."""
 
-    beside: float
+    lateral: float
     around: float
     above: float
 
@@ -81,7 +81,7 @@ class PartAbove:
     """What a part has above heights, in plan; each is found once, with looks at progress."""
 
     space: SurfaceSpace
-    progress: Progress = QUIET
+    progress: Progress = NO_PROGRESS
     _found: dict[float, Region] = field(init=False, repr=False, default_factory=dict)
 
     def over(self, z: float) -> Region:
@@ -95,7 +95,7 @@ class PartAbove:
         return self._found[z]
 
     def _hanging(self, z: float) -> Region:
-        """Return the shadow of what faces downwards above a height: together with the section there it is all that stands above."""
+        """Return the shadow of what faces downwards above a height: together with the section there it is all that is above."""
         skin = self.space.skin
         corners = skin.points[skin.triangles]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -119,22 +119,22 @@ class PartAbove:
             )
         )
 
-    def free(self, z: float, tool: Tool, keeping: LandClearances) -> Region:
+    def free(self, z: float, tool: Tool, clearances: LandClearances) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
         and holder, is left out. It goes on past the blank."""
-        ways = [self.over(z + SKIM)]
-        if keeping.beside > 0.0:
-            ways.append(self.over(z + SIDE).offset(keeping.beside))
+        obstacles = [self.over(z + SKIM)]
+        if clearances.lateral > 0.0:
+            obstacles.append(self.over(z + SIDE).offset(clearances.lateral))
         for z0, r0, _, r1 in tool.profile():
             more, height = (
                 max(r0, r1) - tool.radius,
-                z + max(SKIM, STEP * math.floor((z0 - keeping.above) / STEP)),
+                z + max(SKIM, STEP * math.floor((z0 - clearances.above) / STEP)),
             )
             if more > -tolerance.COINCIDENT:
-                ways.append(self.over(height).offset(more + keeping.around))
-            elif keeping.beside > 0.0:
-                ways.append(self.over(height).offset(max(NECK, keeping.beside)))
-        return self.space.around().minus(union_all(ways))
+                obstacles.append(self.over(height).offset(more + clearances.around))
+            elif clearances.lateral > 0.0:
+                obstacles.append(self.over(height).offset(max(NECK, clearances.lateral)))
+        return self.space.around().minus(union_all(obstacles))
 
 
 def lands_of(space: SurfaceSpace, tags: Collection[int]) -> tuple[Land, ...]:
@@ -157,28 +157,30 @@ def _is_level(space: SurfaceSpace, tag: int) -> bool:
 
 def covered(land: Land, free: Region, tool: Tool) -> Region:
     """Return what of a land the flat of an end mill covers that stays in a free area."""
-    room = free.offset(-tool.radius)
+    axis_region = free.offset(-tool.radius)
     return (
-        room.offset(tool.radius - tool.corner_radius).intersect(land.region)
-        if room
+        axis_region.offset(tool.radius - tool.corner_radius).intersect(land.region)
+        if axis_region
         else EMPTY_REGION
     )
 
 
-def stands_free(standing: PartAbove, land: Land, tool: Tool, progress: Progress = QUIET) -> bool:
-    """Say whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what stands beside a land: a section
+def is_free_of_part(
+    part_above: PartAbove, land: Land, tool: Tool, progress: Progress = NO_PROGRESS
+) -> bool:
+    """Return whether the part, as triangles, is nowhere in the way of an end mill that comes right up to what is beside a land: a section
     that misses something would let it in."""
-    space = standing.space
-    room = (
-        standing.space.around()
-        .minus(standing.over(land.z + SKIM))
+    space = part_above.space
+    axis_region = (
+        part_above.space.around()
+        .minus(part_above.over(land.z + SKIM))
         .offset(-tool.radius)
         .intersect(land.region.offset(tool.radius))
     )
-    if not room:
+    if not axis_region:
         return True
-    rim = room.segments()
-    count = np.maximum(np.ceil(rim.length / PLACES), 1.0).astype(np.int64)
+    rim = axis_region.segments()
+    count = np.maximum(np.ceil(rim.length / RIM_SPACING), 1.0).astype(np.int64)
     row = np.repeat(np.arange(len(rim)), count)
     share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
     disc = level_disc(max(tool.radius - TOUCHING, 0.5 * tool.radius))
@@ -197,13 +199,17 @@ def land_drive(
     space: SurfaceSpace,
     before: Sequence[Operation],
     stock_top: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> PlaneDrive:
     """Return the drive of an end mill on lands, from the highest down: of each what the operations `before` it left.
 
     Stock that is thicker than the operation's depth comes off in even steps.
     """
-    standing, keeping, tool = PartAbove(space, progress), keeping_of(operation), operation.cutter
+    part_above, clearances, tool = (
+        PartAbove(space, progress),
+        clearances_of(operation),
+        operation.cutter,
+    )
     stock = number(operation, STOCK)
     steps = (
         max(1, math.ceil(stock / operation.data.depth - tolerance.COINCIDENT))
@@ -214,13 +220,13 @@ def land_drive(
     floors: list[Floor] = []
     for lands in progress.each(_together(lands_of(space, operation.faces))):
         z = min(land.z for land in lands)
-        wanted = [left_by(standing, land, before) for land in lands]
+        wanted = [remaining_of(part_above, land, before) for land in lands]
         levels.append(
             DriveLevel(
                 top=levels[-1].bottom if levels else max(stock_top, z),
                 bottom=z,
                 wanted=union_all(wanted),
-                boundary=standing.free(z, tool, keeping),
+                boundary=part_above.free(z, tool, clearances),
             )
         )
         floors += [
@@ -239,20 +245,20 @@ def land_drive(
     )
 
 
-def left_by(standing: PartAbove, land: Land, before: Sequence[Operation]) -> Region:
+def remaining_of(part_above: PartAbove, land: Land, before: Sequence[Operation]) -> Region:
     """Return what operations on a land leave of it: but for hairs along their rims all of it where there are none."""
-    left = land.region
+    remaining = land.region
     for operation in before:
         if set(operation.faces) & set(land.tags):
-            left = without(
-                left,
+            remaining = without(
+                remaining,
                 covered(
                     land,
-                    standing.free(land.z, operation.cutter, keeping_of(operation)),
+                    part_above.free(land.z, operation.cutter, clearances_of(operation)),
                     operation.cutter,
                 ),
             )
-    return left
+    return remaining
 
 
 def without(region: Region, done: Region) -> Region:
@@ -260,12 +266,10 @@ def without(region: Region, done: Region) -> Region:
     return region.minus(done).opened(HAIR) if done else region
 
 
-def keeping_of(operation: Operation) -> LandClearances:
+def clearances_of(operation: Operation) -> LandClearances:
     """Return what an operation on lands keeps, from its choices."""
-    beside, around, above = (
-        number(operation, key) for key in (BESIDE_SIDES, AROUND_TOOL, ABOVE_TOOL)
-    )
-    return LandClearances(beside=beside, around=around, above=above)
+    lateral, around, above = (number(operation, key) for key in (LATERAL, AROUND_TOOL, ABOVE_TOOL))
+    return LandClearances(lateral=lateral, around=around, above=above)
 
 
 def _together(lands: Sequence[Land]) -> list[list[Land]]:

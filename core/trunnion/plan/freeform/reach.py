@@ -12,19 +12,19 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
-from trunnion.plan.freeform.finishing.rest import BESIDE, LIFTED
+from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, LIFTED
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 SAMPLES = 1500
-"""Places that an area is judged by; one of them stands for less than a thousandth of it."""
+"""Samples that an area is judged by; one of them stands for less than a thousandth of it."""
 FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
 """Steps of an even spread over a square, by the golden ratio and its square."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class AreaSamples:
-    """Places (k, 3) on faces with outward unit normals (k, 3) and tags (k,), each standing for the same area in mm2."""
+    """Samples (k, 3) on faces with outward unit normals (k, 3) and tags (k,), each standing for the same area in mm2."""
 
     point: Floats
     normal: Floats
@@ -35,14 +35,14 @@ class AreaSamples:
         return len(self.face)
 
     def of(self, rows: Bools) -> AreaSamples:
-        """Return some of the places."""
+        """Return some of the samples."""
         return AreaSamples(
             point=self.point[rows], normal=self.normal[rows], face=self.face[rows], area=self.area
         )
 
 
-def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaSamples:
-    """Return places spread evenly over faces: a place stands for an equal share of their area, the same ones each time."""
+def samples_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaSamples:
+    """Return samples spread evenly over faces: a sample stands for an equal share of their area, the same ones each time."""
     rows = np.flatnonzero(skin.of(tags))
     corners = skin.points[skin.triangles[rows]]
     area = 0.5 * np.linalg.norm(
@@ -69,31 +69,31 @@ def places_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaSa
     )
 
 
-def leans(places: AreaSamples) -> Floats:
-    """Return how far the normals of places lean from the tool's axis (k,), rad."""
-    return np.asarray(np.arccos(np.clip(places.normal[:, 2], -1.0, 1.0)))
+def leans(samples: AreaSamples) -> Floats:
+    """Return how far the normals of samples lean from the tool's axis (k,), rad."""
+    return np.asarray(np.arccos(np.clip(samples.normal[:, 2], -1.0, 1.0)))
 
 
 def reached(
     space: SurfaceSpace,
-    places: AreaSamples,
+    samples: AreaSamples,
     tool: Tool,
-    room: float,
+    clearance: float,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Bools:
-    """Say which places (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least `room`
-    mm above the part, and without going lower than the blank.
+    """Return which samples (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least
+    `clearance` mm above the part, and without going lower than the blank.
 
     With an allowance it is the faces thickened by so much that it touches.
     """
     steepest = math.pi / 2.0 + tolerance.ANGLE
-    found = leans(places) < steepest
+    found = leans(samples) < steepest
     rows = np.flatnonzero(found)
     axis = np.tile([0.0, 0.0, 1.0], (len(rows), 1))
     # Off the face by what its triangles may be too high: beside steep faces a little of that lifts a cutter far.
     off = allowance + 2.0 * space.skin.bound
-    tip = tip_at(tool, places.point[rows] + off * places.normal[rows], places.normal[rows], axis)
+    tip = tip_at(tool, samples.point[rows] + off * samples.normal[rows], samples.normal[rows], axis)
     plan, lowest = tip[:, :2], float(space.low[2]) - space.setup.clearance - tool.gauge_length
     top = space.skin.drop.drop(plan, lower_side(tool, allowance), lowest, progress) + allowance
     highest = float(space.skin.points[:, 2].max())
@@ -101,32 +101,32 @@ def reached(
     for z0, r0, _, r1 in tool.profile():
         # What is no wider than the cutter goes where it has been.
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
-            some = np.flatnonzero(clear)[tip[clear, 2] + z0 - room < highest]
+            some = np.flatnonzero(clear)[tip[clear, 2] + z0 - clearance < highest]
             over = space.skin.drop.drop(
-                plan[some], level_disc(max(r0, r1) + BESIDE), lowest, progress
+                plan[some], level_disc(max(r0, r1) + HOLDER_CLEARANCE), lowest, progress
             )
-            clear[some] = over + room < tip[some, 2] + z0
+            clear[some] = over + clearance < tip[some, 2] + z0
     found[rows] = clear
     return found
 
 
-def clear_beside(
+def is_clear_of_walls(
     space: SurfaceSpace,
-    places: AreaSamples,
+    samples: AreaSamples,
     tool: Tool,
     bottom: float,
-    room: float,
+    clearance: float,
     allowance: float,
 ) -> bool:
-    """Say whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `room` mm over what stands beside:
-    the part with an allowance all round."""
-    beside = places.point[:, :2] + tool.radius * places.normal[:, :2]
+    """Return whether shank and holder of a cutter that goes along upright walls, its tip at a height, stay `clearance` mm over what is
+    beside: the part with an allowance all round."""
+    shifted = samples.point[:, :2] + tool.radius * samples.normal[:, :2]
     lowest = float(space.low[2]) - 1.0
     for z0, r0, _, r1 in tool.profile():
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
             over = space.skin.drop.drop(
-                beside, level_disc(max(r0, r1) + BESIDE + allowance), lowest
+                shifted, level_disc(max(r0, r1) + HOLDER_CLEARANCE + allowance), lowest
             )
-            if (over + allowance + room >= bottom + z0).any():
+            if (over + allowance + clearance >= bottom + z0).any():
                 return False
     return True

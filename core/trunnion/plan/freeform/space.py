@@ -18,10 +18,10 @@ from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.finishing.rest import left_by, without_met
+from trunnion.plan.freeform.finishing.rest import remaining_of, without_met
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 
 AROUND = 45.0
@@ -91,20 +91,21 @@ class SurfaceSpace:
         operation: Operation,
         needs: DriveNeeds,
         earlier: Tool | None = None,
-        ask: Callable[[Tool], ClearanceQuery] | None = None,
-        progress: Progress = QUIET,
+        query_for: Callable[[Tool], ClearanceQuery] | None = None,
+        progress: Progress = NO_PROGRESS,
     ) -> SurfaceDrive:
-        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `ask` makes askers.
+        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for`
+        returns the clearance query of a tool.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
         """
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if earlier is not None and not needs.finds_rest:
-            skin, faces = left_by(skin, faces, earlier, lowest, height, progress)
+            skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress)
         if not needs.leans:
             skin, faces = without_met(skin, faces, operation.cutter, lowest, height, progress)
-        told = digest(
+        identity = digest(
             self.part.digest,
             self.part.solid,
             operation.feature,
@@ -132,7 +133,7 @@ class SurfaceSpace:
             clearance=self.setup.clearance,
             allowance=allowance,
             height=height,
-            digest=told,
+            digest=identity,
             earlier=earlier,
-            ask=ask,
+            query_for=query_for,
         )

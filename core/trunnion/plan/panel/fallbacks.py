@@ -1,8 +1,8 @@
-"""What a task asks for instead when no cutter of the catalogue fits it as wanted: the next best that a programmer would take.
+"""What a task requests instead when no cutter of the catalogue fits it as wanted: the next best that a programmer would take.
 
 A deep pocket with tight corners often has no cutter that is slimmer than its corners and long enough. The ladder: a cutter exactly as
 round as the corner; then the slimmest that reaches, and the corner is left, named and measured by the proof; in roughing one that has less
-room to turn, then one that leaves more to rest roughing.
+space to turn, then one that leaves more to rest roughing.
 """
 
 from __future__ import annotations
@@ -21,25 +21,25 @@ MOST_MISSED = 0.6
 """Share of a pocket that roughing leaves to smaller cutters at most, where none gets into the rest of it."""
 
 
-def best_fit(draft: PanelPlanState, task: OperationTask) -> tuple[OperationTask, Candidates]:
+def best_fit(state: PanelPlanState, task: OperationTask) -> tuple[OperationTask, Candidates]:
     """Return the task as it can be done, with its cutters; without any where nothing on the ladder fits."""
-    tools, clearance = catalogue(draft, task.stage), draft.settings.reach_clearance
-    wanted = candidates(task.requirement, tools, clearance, draft.progress)
+    tools, clearance = catalogue(state, task.stage), state.settings.reach_clearance
+    wanted = candidates(task.requirement, tools, clearance, state.progress)
     if wanted.tools:
         return task, wanted
-    for requirement, why in _ladder(draft, task):
-        found = candidates(requirement, tools, clearance, draft.progress)
+    for requirement, why in _ladder(state, task):
+        found = candidates(requirement, tools, clearance, state.progress)
         if found.tools:
-            draft.findings.append(_second_choice(task, wanted, why))
+            state.findings.append(_second_choice(task, wanted, why))
             return replace(task, requirement=requirement), found
     return task, wanted
 
 
-def _ladder(draft: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
-    """Return what may be asked for instead, best first, each with what becomes of it in words."""
-    asked, rule = task.requirement, task.stage.cutter
+def _ladder(state: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
+    """Return what may be requested instead, best first, each with what becomes of it in words."""
+    requirement, rule = task.requirement, task.stage.cutter
     if rule == "rough":
-        tight = replace(asked, spare=1.0)
+        tight = replace(requirement, spare=1.0)
         return [
             (tight, "it is roughed by a cutter that has little room to turn"),
             (
@@ -47,37 +47,37 @@ def _ladder(draft: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequir
                 "what the roughing cutter leaves is roughed by smaller ones",
             ),
         ]
-    if rule not in ("rest", "wall", "corner") or not asked.radius:
+    if rule not in ("rest", "wall", "corner") or not requirement.radius:
         return []
-    round_as_corner = replace(asked, radius=asked.radius / draft.settings.corner_share)
+    round_as_corner = replace(requirement, radius=requirement.radius / state.settings.corner_share)
     ladder = [(round_as_corner, "its cutter is as round as the corners")]
     if rule == "wall":
-        loose = replace(asked, radius=0.0, missable=draft.settings.missable, cusps=False)
+        loose = replace(requirement, radius=0.0, missable=state.settings.missable, cusps=False)
         return [*ladder, (loose, "its corners are left to another cutter")]
-    slimmest, before = _slimmest(draft, task), _before(draft, task)
+    slimmest, before = _slimmest(state, task), _before(state, task)
     if before is not None and slimmest < before.radius:
-        left = replace(asked, radius=slimmest, missable=1.0, cusps=False, near=0.0)
+        coarser = replace(requirement, radius=slimmest, missable=1.0, cusps=False, near=0.0)
         ladder.append(
             (
-                left,
+                coarser,
                 f"the slimmest that reaches leaves a radius of {trimmed(slimmest, 2)} mm in the corners",
             )
         )
     return ladder
 
 
-def _slimmest(draft: PanelPlanState, task: OperationTask) -> float:
+def _slimmest(state: PanelPlanState, task: OperationTask) -> float:
     """Return the radius of the slimmest cutter that gets down to a task's foot."""
     open_to_all = replace(task.requirement, radius=0.0, missable=1.0, cusps=False, near=0.0)
     found = candidates(
-        open_to_all, catalogue(draft, task.stage), draft.settings.reach_clearance, draft.progress
+        open_to_all, catalogue(state, task.stage), state.settings.reach_clearance, state.progress
     )
     return min((t.radius for t in found.tools), default=math.inf)
 
 
-def _before(draft: PanelPlanState, task: OperationTask) -> Tool | None:
+def _before(state: PanelPlanState, task: OperationTask) -> Tool | None:
     """Return the cutter that was in a feature's corners before."""
-    return draft.tools.get(f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}")
+    return state.tools.get(f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}")
 
 
 def _second_choice(task: OperationTask, wanted: Candidates, why: str) -> Finding:
@@ -90,14 +90,14 @@ def _second_choice(task: OperationTask, wanted: Candidates, why: str) -> Finding
     )
 
 
-def with_floors_behind_roughing(draft: PanelPlanState, tasks: Sequence[OperationTask]) -> None:
-    """Give floors a cutter that finds room where roughing cleared, in pockets whose corners no roughing cutter got into.
+def with_floors_behind_roughing(state: PanelPlanState, tasks: Sequence[OperationTask]) -> None:
+    """Give floors a cutter that finds space where roughing cleared, in pockets whose corners no roughing cutter got into.
 
-    A floor's cutter goes to the bottom at once: one that is slimmer than the last roughing cutter goes into stock that stands as high as
+    A floor's cutter goes to the bottom at once: one that is slimmer than the last roughing cutter goes into stock that is as high as
     the pocket is deep, and above its flutes the neck and shank meet it.
     """
     for task in tasks:
-        tool, cleared = draft.tools[task.id], _cleared(draft, task, tasks)
+        tool, cleared = state.tools[task.id], _cleared(state, task, tasks)
         if (
             task.stage.cutter != "floor"
             or tool.radius >= cleared
@@ -106,27 +106,27 @@ def with_floors_behind_roughing(draft: PanelPlanState, tasks: Sequence[Operation
             continue
         found = candidates(
             replace(task.requirement, missable=1.0, near=0.0),
-            catalogue(draft, task.stage),
-            draft.settings.reach_clearance,
-            draft.progress,
+            catalogue(state, task.stage),
+            state.settings.reach_clearance,
+            state.progress,
         )
         as_wide = [t for t in found.tools if t.radius >= cleared]
         if as_wide:
-            draft.tools[task.id] = min(as_wide, key=lambda t: (t.radius, -t.corner_radius, t.name))
+            state.tools[task.id] = min(as_wide, key=lambda t: (t.radius, -t.corner_radius, t.name))
 
 
-def _cleared(draft: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]) -> float:
+def _cleared(state: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]) -> float:
     """Return the radius of the smallest cutter that roughed a task's feature, 0 where none did."""
     rough = [t for t in tasks if t.feature == task.feature and t.stage.cutter in ("rough", "rest")]
-    return min((draft.tools[t.id].radius for t in rough), default=0.0)
+    return min((state.tools[t.id].radius for t in rough), default=0.0)
 
 
 def behind_rest_roughing(
-    draft: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]
+    state: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]
 ) -> frozenset[str]:
     """Return the ids of rest roughing that a floor's cutter has to wait for: it is slimmer than the first roughing cutter, so it goes into
-    corners where stock stands up to the pocket's rim."""
-    first = draft.tools.get(f"rough-{task.feature}")
-    if task.stage.cutter != "floor" or first is None or draft.tools[task.id].radius >= first.radius:
+    corners where stock is up to the pocket's rim."""
+    first = state.tools.get(f"rough-{task.feature}")
+    if task.stage.cutter != "floor" or first is None or state.tools[task.id].radius >= first.radius:
         return frozenset()
     return frozenset(t.id for t in tasks if t.feature == task.feature and t.stage.cutter == "rest")

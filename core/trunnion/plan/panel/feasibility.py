@@ -62,16 +62,19 @@ def without_lonely_ribs(
     planned: list[Feature],
     refusals: dict[str, str],
     recognition: Recognition,
-    beside: Mapping[str, frozenset[str]],
+    adjacent: Mapping[str, frozenset[str]],
 ) -> tuple[list[Feature], dict[str, str]]:
     """Return the same without ribs beside a space that is not planned: their cutter would run in solid material."""
     kinds = {f.id: f.kind for f in recognition}
     for feature in planned:
-        left = sorted(
-            i for i in beside.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS
+        remaining = sorted(
+            i for i in adjacent.get(feature.id, ()) if i in refusals and kinds[i] in POCKETS
         )
-        if feature.kind == "rib" and left:
-            refusals = {**refusals, feature.id: f"it stands beside {left[0]}, which is not planned"}
+        if feature.kind == "rib" and remaining:
+            refusals = {
+                **refusals,
+                feature.id: f"it stands beside {remaining[0]}, which is not planned",
+            }
     return [f for f in planned if f.id not in refusals], refusals
 
 
@@ -96,8 +99,8 @@ def not_planned(refusals: Mapping[str, str], recognition: Recognition) -> list[F
     return found
 
 
-def beside(recognition: Recognition, part: SectionSource) -> dict[str, frozenset[str]]:
-    """Return for each feature those whose faces share an edge with its own, and those it stands in or holds."""
+def adjacent(recognition: Recognition, part: SectionSource) -> dict[str, frozenset[str]]:
+    """Return for each feature those whose faces share an edge with its own, and those it is in or holds."""
     graph = part.graph()
     owners: dict[int, set[str]] = {}
     for feature in recognition:
@@ -121,8 +124,8 @@ def beside(recognition: Recognition, part: SectionSource) -> dict[str, frozenset
 def no_cutter(task: OperationTask, found: Candidates) -> Finding:
     """Return the finding that no cutter of the catalogue fits an operation: an error where a whole feature stays, else a warning on what
     the proof will measure as left."""
-    tell = warning if task.stage.cutter in ("corner", "foot") else error
-    return tell(
+    make_finding = warning if task.stage.cutter in ("corner", "foot") else error
+    return make_finding(
         "route.no-cutter",
         f"{task.feature}: {found.reason} ({task.stage.name})",
         task.feature,

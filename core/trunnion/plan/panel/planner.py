@@ -10,7 +10,7 @@ from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, 
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.panel.route import make_route
-from trunnion.plan.panel.tasks import WISHES
+from trunnion.plan.panel.tasks import TASK_MAKERS
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.settings import RouteSettings
@@ -25,7 +25,7 @@ class PanelPlanner:
 
     name, noun = "panel", "panels"
     settings: tuple[type, ...] = (RouteSettings,)
-    cutter_rules: tuple[str, ...] = tuple(WISHES)
+    cutter_rules: tuple[str, ...] = tuple(TASK_MAKERS)
 
     def can_plan(self, part: Part) -> None:
         """Refuse no part: features whose sections can't be made are refused one by one."""
@@ -39,7 +39,7 @@ class PanelPlanner:
             job.setups,
             job.shop,
             job.context.part,
-            job.chosen(RouteSettings),
+            job.settings_of(RouteSettings),
             job.progress,
         )
 
@@ -65,4 +65,4 @@ def _plane_driven(
         lambda: SetupSpace.of(scene.context.part, scene.recognition, scene.blank, scene.setup),
     )
     drive = drive_of(operation, scene.process, space)
-    return OperationDrive(setup=scene.setup, drive=drive, told=drive)
+    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)

@@ -26,7 +26,7 @@ from trunnion.plan.panel.fallbacks import (
     with_floors_behind_roughing,
 )
 from trunnion.plan.panel.feasibility import (
-    beside,
+    adjacent,
     no_cutter,
     not_planned,
     plannable,
@@ -34,7 +34,7 @@ from trunnion.plan.panel.feasibility import (
 )
 from trunnion.plan.panel.tasks import (
     DEPENDENT,
-    WISHES,
+    TASK_MAKERS,
     OperationTask,
     PanelPlanState,
     floor_distance,
@@ -75,7 +75,7 @@ def make_route(
     (`route.not-planned`); their material stays and the proof counts it. A cutter that does not exist is an error (`route.no-cutter`), so
     is a blank that the machine can't take (`route.travel`; nothing is planned then).
     """
-    plan = typical_plan(shop, recognition.family, settings.plan, tuple(WISHES))
+    plan = typical_plan(shop, recognition.family, settings.plan, tuple(TASK_MAKERS))
     material = shop.material(blank.material)
     findings = too_large(blank, setups, shop)
     if findings:
@@ -83,31 +83,31 @@ def make_route(
             plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings)
         )
     progress.at(0.0, "what is to be cut")
-    near = beside(recognition, part)
+    near = adjacent(recognition, part)
     planned, refusals = without_lonely_ribs(*plannable(recognition, plan.stages), recognition, near)
     findings = not_planned(refusals, recognition)
     operations: list[Operation] = []
     for n, setup in enumerate(setups):
-        draft = PanelPlanState(
+        state = PanelPlanState(
             space=SetupSpace.of(part, recognition, blank, setup),
             recognition=recognition,
             material=material,
             machine=shop.machine(setup.machine),
             settings=settings,
             shop=shop,
-            beside=near,
+            adjacent=near,
             loaded=tuple(o.cutter for o in operations),
         )
         mine = [f for f in planned if _from_below(f, recognition, part) == (n > 0)]
         share = progress.part(n / len(setups), (n + 1) / len(setups))
-        draft.progress = share
-        operations += _sequenced(draft, _with_cutters(draft, mine, plan.stages, share), plan.stages)
-        findings += draft.findings
+        state.progress = share
+        operations += _sequenced(state, _with_cutters(state, mine, plan.stages, share), plan.stages)
+        findings += state.findings
     return process_of(operations, findings, plan=plan, material=material, setups=setups, shop=shop)
 
 
 def _from_below(feature: Feature, recognition: Recognition, part: SectionSource) -> bool:
-    """Say whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
+    """Return whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
     tags = feature.with_role("floor", "top")
     if "direction" in feature.attributes or not tags:
         return from_below(feature)
@@ -115,7 +115,7 @@ def _from_below(feature: Feature, recognition: Recognition, part: SectionSource)
 
 
 def _with_cutters(
-    draft: PanelPlanState, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress
+    state: PanelPlanState, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress
 ) -> list[OperationTask]:
     """Return the tasks that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
     tasks: list[OperationTask] = []
@@ -129,54 +129,54 @@ def _with_cutters(
         fresh = [
             task
             for stage in progress.each(together)
-            for task in WISHES[stage.cutter](draft, stage, features)
+            for task in TASK_MAKERS[stage.cutter](state, stage, features)
         ]
         served: list[OperationTask] = []
         for n, wanted in enumerate(fresh):
             task = wanted
             progress.at((done + n / len(fresh)) / len(rounds), f"cutter for {task.id}")
-            task, found = best_fit(draft, task)
+            task, found = best_fit(state, task)
             if found.tools:
                 fits[task.id] = found.tools
                 served.append(task)
             elif task.stage.cutter != "rest":
-                draft.findings.append(no_cutter(task, found))
-        draft.tools |= covered_by_few(fits, [*draft.loaded, *draft.tools.values()])
+                state.findings.append(no_cutter(task, found))
+        state.tools |= covered_by_few(fits, [*state.loaded, *state.tools.values()])
         tasks += served
-    with_floors_behind_roughing(draft, tasks)
-    return with_falling_sizes(draft, tasks)
+    with_floors_behind_roughing(state, tasks)
+    return with_falling_sizes(state, tasks)
 
 
 def _sequenced(
-    draft: PanelPlanState, tasks: Sequence[OperationTask], stages: Sequence[Stage]
+    state: PanelPlanState, tasks: Sequence[OperationTask], stages: Sequence[Stage]
 ) -> list[Operation]:
     rank = {stage.name: n for n, stage in enumerate(stages)}
-    after = {w.id: _before(draft, w, tasks) for w in tasks}
+    after = {w.id: _before(state, w, tasks) for w in tasks}
     jobs = [
         OrderedOperation(
             id=w.id,
-            tool=draft.tools[w.id].name,
+            tool=state.tools[w.id].name,
             stage=rank[w.stage.name],
-            place=w.place,
+            position=w.position,
             after=after[w.id],
         )
         for w in tasks
     ]
     by_id = {w.id: w for w in tasks}
-    return [_operation(draft, by_id[id], after[id]) for id in ordered(jobs)]
+    return [_operation(state, by_id[id], after[id]) for id in ordered(jobs)]
 
 
 def _before(
-    draft: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]
+    state: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]
 ) -> frozenset[str]:
     """Return the ids that come before a task: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
-    kinds = {f.id: f.kind for f in draft.recognition}
-    near = {i for i in draft.beside.get(task.feature, ()) if kinds[i] != kinds[task.feature]} | {
+    kinds = {f.id: f.kind for f in state.recognition}
+    near = {i for i in state.adjacent.get(task.feature, ()) if kinds[i] != kinds[task.feature]} | {
         task.feature,
         "blank",
     }
-    own = next((f for f in draft.recognition if f.id == task.feature), None)
-    parent = parent_of(own, draft.recognition) if own else None
+    own = next((f for f in state.recognition if f.id == task.feature), None)
+    parent = parent_of(own, state.recognition) if own else None
     found: set[str] = set()
     for other in tasks:
         if other.stage.name in task.stage.after_all or (
@@ -189,43 +189,43 @@ def _before(
             and other.feature == parent.id
         ):
             found.add(other.id)
-    found |= behind_rest_roughing(draft, task, tasks)
+    found |= behind_rest_roughing(state, task, tasks)
     steps = [w.id for w in tasks if w.feature == task.feature and w.stage.name == task.stage.name]
     return frozenset(found | set(steps[: steps.index(task.id)]))
 
 
-def _operation(draft: PanelPlanState, task: OperationTask, after: frozenset[str]) -> Operation:
-    tool, stage, chosen, cutting = (
-        draft.tools[task.id],
+def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]) -> Operation:
+    tool, stage, settings, cutting = (
+        state.tools[task.id],
         task.stage,
-        draft.settings,
+        state.settings,
         choose(CuttingSettings, {}),
     )
-    depth, width = _engagement(draft, task, tool, cutting)
+    depth, width = _engagement(state, task, tool, cutting)
     choices: dict[str, Value] = (
         {}
         if stage.finish
-        else {WALL_ALLOWANCE: chosen.wall_allowance, FLOOR_ALLOWANCE: chosen.floor_allowance}
+        else {WALL_ALLOWANCE: settings.wall_allowance, FLOOR_ALLOWANCE: settings.floor_allowance}
     )
     if stage.kind == "floor":
-        choices["plane.floor.wall_distance"] = floor_distance(chosen)
+        choices["plane.floor.wall_distance"] = floor_distance(settings)
     data = cutting_data(
         tool,
-        draft.material,
-        draft.machine,
+        state.material,
+        state.machine,
         stage.kind,
         cutting,
         depth,
         width,
-        _widest(task, chosen),
+        _widest(task, settings),
     )
-    rules = (stage.rule, *_tool_rules(task, tool, chosen))
+    rules = (stage.rule, *_tool_rules(task, tool, settings))
     return Operation(
         id=task.id,
         kind=stage.kind,
         strategy=stage.strategy,
         feature=task.feature,
-        setup=draft.space.setup.name,
+        setup=state.space.setup.name,
         tool=tool,
         group=stage.name,
         data=data,
@@ -237,18 +237,18 @@ def _operation(draft: PanelPlanState, task: OperationTask, after: frozenset[str]
 
 
 def _engagement(
-    draft: PanelPlanState, task: OperationTask, tool: Tool, cutting: CuttingSettings
+    state: PanelPlanState, task: OperationTask, tool: Tool, cutting: CuttingSettings
 ) -> tuple[float, float]:
     """Return depth ap and width ae: roughing by material, even layers; finishing takes the allowance in steps that the flutes bear."""
-    rough_depth = _even(task.height, roughing_depth(tool, draft.material, cutting))
-    rough_width = roughing_width(tool, draft.material, cutting)
-    kind, allowance = task.stage.kind, draft.settings.wall_allowance
+    rough_depth = _even(task.height, roughing_depth(tool, state.material, cutting))
+    rough_width = roughing_width(tool, state.material, cutting)
+    kind, allowance = task.stage.kind, state.settings.wall_allowance
     if kind == "face":
         return _even(task.height, min(tool.flute_length / 2, rough_depth)), min(
             FACE_WIDTH * tool.diameter, task.width
         )
     if kind == "floor":
-        return max(draft.settings.floor_allowance, tolerance.SEW), FLOOR_WIDTH * (
+        return max(state.settings.floor_allowance, tolerance.SEW), FLOOR_WIDTH * (
             tool.diameter - 2 * tool.corner_radius
         )
     if kind in ("wall", "corner_finish", "profile_finish"):
@@ -264,13 +264,13 @@ def _engagement(
     return rough_depth, rough_width
 
 
-def _widest(task: OperationTask, chosen: RouteSettings) -> float:
-    """Return how wide what stands in front of the cutter can be at once, in mm: a face's shorter side, a rib with its walls' allowance; 0
+def _widest(task: OperationTask, settings: RouteSettings) -> float:
+    """Return how wide what is in front of the cutter can be at once, in mm: a face's shorter side, a rib with its walls' allowance; 0
     where the area doesn't say."""
     if task.stage.kind == "face":
         return task.width
     return (
-        task.width + 2.0 * chosen.wall_allowance
+        task.width + 2.0 * settings.wall_allowance
         if task.stage.kind == "rib_top" and math.isfinite(task.width)
         else 0.0
     )
@@ -285,26 +285,26 @@ def _even(height: float, most: float) -> float:
     return height / max(math.ceil(height / most - tolerance.COINCIDENT), 1)
 
 
-def _tool_rules(task: OperationTask, tool: Tool, chosen: RouteSettings) -> tuple[str, ...]:
+def _tool_rules(task: OperationTask, tool: Tool, settings: RouteSettings) -> tuple[str, ...]:
     requirement = task.requirement
-    said = [
+    notes = [
         f"{tool.name}: reaches {trimmed(depth_reached(tool), 2)} mm, {trimmed(requirement.depth, 2)} mm and "
-        f"{trimmed(chosen.reach_clearance, 2)} mm clearance are needed."
+        f"{trimmed(settings.reach_clearance, 2)} mm clearance are needed."
     ]
     if requirement.radius:
-        said.append(
+        notes.append(
             f"Its radius {trimmed(tool.radius, 2)} mm is at most {trimmed(requirement.radius, 2)} mm, "
-            f"{trimmed(100 * chosen.corner_share, 0)} % of the corner's."
+            f"{trimmed(100 * settings.corner_share, 0)} % of the corner's."
         )
     exact = (
         "is that of the floor fillet."
         if requirement.exact
         else f"is at most that of the floor fillet, {trimmed(requirement.corner_radius, 2)} mm."
     )
-    said.append(f"Its corner radius {trimmed(tool.corner_radius, 2)} mm {exact}")
+    notes.append(f"Its corner radius {trimmed(tool.corner_radius, 2)} mm {exact}")
     if not task.stage.finish:
-        said.append(
-            f"It leaves {trimmed(chosen.wall_allowance, 2)} mm on walls and {trimmed(chosen.floor_allowance, 2)} mm on floors."
+        notes.append(
+            f"It leaves {trimmed(settings.wall_allowance, 2)} mm on walls and {trimmed(settings.floor_allowance, 2)} mm on floors."
         )
-    said.append("Among the cutters that fit it is the one that serves most operations.")
-    return tuple(said)
+    notes.append("Among the cutters that fit it is the one that serves most operations.")
+    return tuple(notes)

@@ -1,4 +1,4 @@
-"""The operations that each stage of a typical plan asks for: for every feature the requirement that a
+"""The operations that each stage of a typical plan requests: for every feature the requirement that a
 cutter must fit, by the rule that the stage names."""
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from trunnion.plan.prismatic.regions import (
 )
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.tool_choice import ToolRequirement, candidates, depth_reached, fits_through
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
 
 SPARE = 2.0
-"""Radii of a roughing cutter that should fit from the rim to the middle of a pocket where it is widest: room for a helix and a turn."""
+"""Radii of a roughing cutter that should fit from the rim to the middle of a pocket where it is widest: space for a helix and a turn."""
 
 NEAR_ROUGH, NEAR_WALL, NEAR_FLOOR = 0.9, 0.6, 0.5
 """How much smaller than the largest that fits a cutter may be, over its diameter, when it serves other operations too."""
@@ -58,7 +58,7 @@ class OperationTask:
     id: str
     stage: Stage
     feature: str
-    place: tuple[float, float]
+    position: tuple[float, float]
     requirement: ToolRequirement
     faces: tuple[int, ...]
     height: float
@@ -75,12 +75,12 @@ class PanelPlanState:
     machine: Machine
     settings: RouteSettings
     shop: Shop
-    beside: Mapping[str, frozenset[str]]
+    adjacent: Mapping[str, frozenset[str]]
     loaded: tuple[Tool, ...] = ()
     bands: dict[str, tuple[Band, ...]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     tools: dict[str, Tool] = field(default_factory=dict)
-    progress: Progress = QUIET
+    progress: Progress = NO_PROGRESS
 
 
 def floor_distance(settings: RouteSettings) -> float:
@@ -88,40 +88,44 @@ def floor_distance(settings: RouteSettings) -> float:
     return settings.wall_allowance + FLOOR_DISTANCE
 
 
-def catalogue(draft: PanelPlanState, stage: Stage) -> tuple[Tool, ...]:
+def catalogue(state: PanelPlanState, stage: Stage) -> tuple[Tool, ...]:
     """Return the cutters that a stage may choose from."""
     use = "face" if stage.cutter == "face" else "finish" if stage.finish else "rough"
-    tools = draft.shop.tools_for(draft.material.iso_group, use)
+    tools = state.shop.tools_for(state.material.iso_group, use)
     return (
         tools
         if stage.cutter == "face"
-        else tuple(t for t in tools if t.diameter <= draft.settings.largest)
+        else tuple(t for t in tools if t.diameter <= state.settings.largest)
     )
 
 
-def _wishes_face(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _face_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
-    space = draft.space
+    space = state.space
     height = float(space.blank_high[2]) - space.top
     if height <= tolerance.SEW:
         return []
     tops = tuple(
         tag
-        for f in draft.recognition
+        for f in state.recognition
         for tag in f.with_role("top", "bottom")
         if abs(space.centre(tag)[2] - space.top) < tolerance.SEW
     )
     middle = 0.5 * (space.blank_low + space.blank_high)
     requirement = ToolRequirement(
-        depth=0.0, room=space.around(), wanted=space.blank_area(), corner_radius=0.0, near=1.0
+        depth=0.0,
+        envelope_area=space.around(),
+        wanted=space.blank_area(),
+        corner_radius=0.0,
+        near=1.0,
     )
     return [
         OperationTask(
             id=f"face-{space.setup.name}",
             stage=stage,
             feature="blank",
-            place=(float(middle[0]), float(middle[1])),
+            position=(float(middle[0]), float(middle[1])),
             requirement=requirement,
             faces=tops,
             height=height,
@@ -130,124 +134,124 @@ def _wishes_face(
     ]
 
 
-def _pocket_wishes(
-    draft: PanelPlanState,
+def _pocket_tasks(
+    state: PanelPlanState,
     stage: Stage,
     features: Sequence[Feature],
     make: Callable[[Feature, tuple[Band, ...]], OperationTask | None],
 ) -> list[OperationTask]:
     """Return the tasks for the pockets of a stage; a pocket without free space over its floor is told of once and left out."""
     found = []
-    for feature in draft.progress.each(features):
+    for feature in state.progress.each(features):
         if feature.kind not in stage.on:
             continue
-        if feature.id not in draft.bands:
+        if feature.id not in state.bands:
             try:
-                draft.bands[feature.id] = draft.space.bands_of(feature)
+                state.bands[feature.id] = state.space.bands_of(feature)
             except Refused as reason:
-                draft.bands[feature.id] = ()
-                draft.findings.append(
+                state.bands[feature.id] = ()
+                state.findings.append(
                     warning("route.not-planned", str(reason), feature.id, *face_tags(feature.tags))
                 )
-        if draft.bands[feature.id]:
-            task = make(feature, draft.bands[feature.id])
+        if state.bands[feature.id]:
+            task = make(feature, state.bands[feature.id])
             if task is not None:
                 found.append(task)
     return found
 
 
-def _wishes_rough(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _rough_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         is_open = feature.kind == "open_pocket"
         requirement = ToolRequirement(
-            depth=_depth(draft, bands),
-            room=_kept_off(bands[-1].boundary, draft.settings.wall_allowance),
-            wanted=_kept_off(bands[-1].wanted, draft.settings.wall_allowance),
+            depth=_depth(state, bands),
+            envelope_area=_kept_off(bands[-1].boundary, state.settings.wall_allowance),
+            wanted=_kept_off(bands[-1].wanted, state.settings.wall_allowance),
             corner_radius=floor_fillet(feature),
-            missable=draft.settings.missable,
+            missable=state.settings.missable,
             spare=1.0 if is_open else SPARE,
             near=NEAR_ROUGH,
         )
         if not is_open and not any(
-            bands[-1].boundary.offset(-SPARE * t.radius) for t in catalogue(draft, stage)
+            bands[-1].boundary.offset(-SPARE * t.radius) for t in catalogue(state, stage)
         ):
             requirement = replace(requirement, spare=1.0)
-        return _wish(stage, feature, bands, requirement, ())
+        return _task(stage, feature, bands, requirement, ())
 
-    return _pocket_wishes(draft, stage, features, make)
+    return _pocket_tasks(state, stage, features, make)
 
 
-def _wishes_rest(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _rest_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
-        before = draft.tools.get(f"rough-{feature.id}")
+        before = state.tools.get(f"rough-{feature.id}")
         corner = number(feature, "corner_radius")
         if before is None:
             return None
-        requirement = replace(_wall_task(draft, feature, bands), exact=False)
+        requirement = replace(_wall_task(state, feature, bands), exact=False)
         if not 0.0 < corner < before.radius and fits_through(
-            requirement, before, catalogue(draft, stage)
+            requirement, before, catalogue(state, stage)
         ):
             return None
-        return _wish(stage, feature, bands, requirement, ())
+        return _task(stage, feature, bands, requirement, ())
 
-    return _pocket_wishes(draft, stage, features, make)
+    return _pocket_tasks(state, stage, features, make)
 
 
-def _wishes_floor(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _floor_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
         if not feature.with_role("floor"):
             return None
         # The wall's last pass finishes a strip of the floor as wide as its cutter's reach from the wall.
-        tools, clearance = catalogue(draft, stage), draft.settings.reach_clearance
-        walling = _wall_task(draft, feature, bands)
+        tools, clearance = catalogue(state, stage), state.settings.reach_clearance
+        walling = _wall_task(state, feature, bands)
         walls = (
-            candidates(walling, tools, clearance, draft.progress).tools
-            or candidates(replace(walling, exact=False), tools, clearance, draft.progress).tools
+            candidates(walling, tools, clearance, state.progress).tools
+            or candidates(replace(walling, exact=False), tools, clearance, state.progress).tools
         )
         inner = bands[-1].wanted.offset(
             STRIP_OVERLAP - min((t.diameter - t.corner_radius for t in walls), default=0.0)
         )
         whole = ToolRequirement(
-            depth=_depth(draft, bands),
-            room=_kept_off(bands[-1].boundary, floor_distance(draft.settings)),
-            wanted=_kept_off(bands[-1].wanted, floor_distance(draft.settings)),
+            depth=_depth(state, bands),
+            envelope_area=_kept_off(bands[-1].boundary, floor_distance(state.settings)),
+            wanted=_kept_off(bands[-1].wanted, floor_distance(state.settings)),
             corner_radius=floor_fillet(feature),
-            missable=draft.settings.missable,
+            missable=state.settings.missable,
             near=NEAR_FLOOR,
         )
         rest = replace(
             whole,
-            room=bands[-1].boundary,
+            envelope_area=bands[-1].boundary,
             wanted=inner,
-            keep=floor_distance(draft.settings),
+            keep=floor_distance(state.settings),
             missable=0.0,
         )
         requirement = (
-            rest if inner and candidates(rest, tools, clearance, draft.progress).tools else whole
+            rest if inner and candidates(rest, tools, clearance, state.progress).tools else whole
         )
-        return _wish(stage, feature, bands, requirement, feature.with_role("floor"))
+        return _task(stage, feature, bands, requirement, feature.with_role("floor"))
 
-    return _pocket_wishes(draft, stage, features, make)
+    return _pocket_tasks(state, stage, features, make)
 
 
-def _wishes_wall(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _wall_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         islands = [
             tag
-            for island in draft.space.islands_of(feature)
+            for island in state.space.islands_of(feature)
             for tag in island.with_role("wall", "corner", "floor_fillet")
         ]
         faces = (*feature.with_role("wall", "corner", "floor_fillet"), *islands)
         if feature.sizes.get("corner_radius") == 0.0:
-            draft.findings.append(
+            state.findings.append(
                 warning(
                     "route.sharp-corner",
                     f"{feature.id}: two of its walls meet in a sharp inner edge; the cutter leaves its radius there",
@@ -256,131 +260,135 @@ def _wishes_wall(
                     remedy="give the corner a radius, or finish it by other means",
                 )
             )
-        requirement = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
+        requirement = _with_known_fillet(state, stage, feature, _wall_task(state, feature, bands))
         fine = candidates(
-            requirement, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress
+            requirement, catalogue(state, stage), state.settings.reach_clearance, state.progress
         ).tools
-        if all(t.stickout / t.diameter > draft.settings.slender for t in fine):
-            stiff = replace(requirement, radius=0.0, missable=draft.settings.missable, cusps=False)
+        if all(t.stickout / t.diameter > state.settings.slender for t in fine):
+            stiff = replace(requirement, radius=0.0, missable=state.settings.missable, cusps=False)
             larger = candidates(
-                stiff, catalogue(draft, stage), draft.settings.reach_clearance, draft.progress
+                stiff, catalogue(state, stage), state.settings.reach_clearance, state.progress
             ).tools
-            if any(not fine or t.stickout / t.diameter <= draft.settings.slender for t in larger):
+            if any(not fine or t.stickout / t.diameter <= state.settings.slender for t in larger):
                 requirement = stiff
-        return _wish(stage, feature, bands, requirement, faces)
+        return _task(stage, feature, bands, requirement, faces)
 
-    return _pocket_wishes(draft, stage, features, make)
+    return _pocket_tasks(state, stage, features, make)
 
 
-def _wishes_corner(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _corner_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
-        wall, corner = draft.tools.get(f"wall-{feature.id}"), number(feature, "corner_radius")
+        wall, corner = state.tools.get(f"wall-{feature.id}"), number(feature, "corner_radius")
         is_sharp = feature.sizes.get("corner_radius") == 0.0
         if (
             wall is None
             or (corner <= 0.0 and not is_sharp)
-            or wall.radius <= corner * draft.settings.corner_share + tolerance.COINCIDENT
+            or wall.radius <= corner * state.settings.corner_share + tolerance.COINCIDENT
         ):
             return None
-        requirement = _with_known_fillet(draft, stage, feature, _wall_task(draft, feature, bands))
+        requirement = _with_known_fillet(state, stage, feature, _wall_task(state, feature, bands))
         if is_sharp:
-            requirement = replace(requirement, radius=_smallest(draft, stage, requirement))
+            requirement = replace(requirement, radius=_smallest(state, stage, requirement))
             if requirement.radius >= wall.radius:
                 return None
-        return _wish(stage, feature, bands, requirement, feature.with_role("corner"))
+        return _task(stage, feature, bands, requirement, feature.with_role("corner"))
 
-    return _pocket_wishes(draft, stage, features, make)
+    return _pocket_tasks(state, stage, features, make)
 
 
-def _wishes_foot(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _foot_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     """Ask for the feet of islands that are sharper than the foot of the pocket's walls, whose cutter leaves its corner there."""
 
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask | None:
-        wall = draft.tools.get(f"wall-{feature.id}")
+        wall = state.tools.get(f"wall-{feature.id}")
         sharper = [
             i
-            for i in draft.space.islands_of(feature)
+            for i in state.space.islands_of(feature)
             if wall is not None and floor_fillet(i) < wall.corner_radius - tolerance.COINCIDENT
         ]
         if not sharper:
             return None
-        standing = union_all([_seen_from_above(draft, i) for i in draft.space.islands_of(feature)])
+        islands = union_all([_seen_from_above(state, i) for i in state.space.islands_of(feature)])
         rounder = floor_fillet(feature)
         requirement = ToolRequirement(
-            depth=_depth(draft, bands),
-            room=bands[-1].boundary.union(standing).offset(-rounder).minus(standing),
-            wanted=union_all([_seen_from_above(draft, i) for i in sharper])
+            depth=_depth(state, bands),
+            envelope_area=bands[-1].boundary.union(islands).offset(-rounder).minus(islands),
+            wanted=union_all([_seen_from_above(state, i) for i in sharper])
             .offset(FOOT_RING)
-            .minus(standing),
+            .minus(islands),
             corner_radius=min(map(floor_fillet, sharper)),
             missable=SHARP,
             near=NEAR_FLOOR,
         )
         faces = tuple(tag for i in sharper for tag in i.with_role("wall", "corner", "floor_fillet"))
-        return replace(_wish(stage, feature, bands, requirement, faces), height=rounder)
+        return replace(_task(stage, feature, bands, requirement, faces), height=rounder)
 
-    return _pocket_wishes(draft, stage, features, make)
+    return _pocket_tasks(state, stage, features, make)
 
 
-def _seen_from_above(draft: PanelPlanState, island: Feature) -> Region:
+def _seen_from_above(state: PanelPlanState, island: Feature) -> Region:
     """Return the plan area of an island, by its top."""
-    frame = draft.space.setup.frame
-    return union_all([draft.space.part.face_outline(frame, t) for t in island.with_role("top")])
+    frame = state.space.setup.frame
+    return union_all([state.space.part.face_outline(frame, t) for t in island.with_role("top")])
 
 
-def _wishes_top(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _top_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     found = []
     for feature in features:
         tops = feature.with_role("top")
         if feature.kind not in stage.on or not tops:
             continue
-        z = float(draft.space.centre(tops[0])[2])
-        if draft.space.top - z <= tolerance.SEW:
+        z = float(state.space.centre(tops[0])[2])
+        if state.space.top - z <= tolerance.SEW:
             continue
         try:
-            room, wanted = _top_room(draft, feature, z, tops)
+            envelope_area, wanted = _top_areas(state, feature, z, tops)
         except Refused as reason:
-            draft.findings.append(
+            state.findings.append(
                 warning("route.not-planned", str(reason), feature.id, *face_tags(tops))
             )
             continue
-        place = draft.space.centre(tops[0])
+        position = state.space.centre(tops[0])
         requirement = ToolRequirement(
-            depth=draft.space.top - z, room=room, wanted=wanted, corner_radius=0.0, near=NEAR_FLOOR
+            depth=state.space.top - z,
+            envelope_area=envelope_area,
+            wanted=wanted,
+            corner_radius=0.0,
+            near=NEAR_FLOOR,
         )
         found.append(
             OperationTask(
                 id=f"{stage.kind}-{feature.id}",
                 stage=stage,
                 feature=feature.id,
-                place=(float(place[0]), float(place[1])),
+                position=(float(position[0]), float(position[1])),
                 requirement=requirement,
                 faces=tops,
-                height=draft.space.top - z,
+                height=state.space.top - z,
                 width=number(feature, "thickness", math.inf),
             )
         )
     return found
 
 
-def _top_room(
-    draft: PanelPlanState, feature: Feature, z: float, tops: Sequence[int]
+def _top_areas(
+    state: PanelPlanState, feature: Feature, z: float, tops: Sequence[int]
 ) -> tuple[Region, Region]:
     """Return where a cutter may be at a top's height, and the top itself."""
-    space, wanted = draft.space, EMPTY_REGION
+    space, wanted = state.space, EMPTY_REGION
     for tag in tops:
         wanted = wanted.union(space.part.face_outline(space.setup.frame, tag))
     if feature.kind != "island":
-        return touching(space.free_near(z + tolerance.BESIDE_PLANE, wanted), wanted), wanted
-    pocket = parent_of(feature, draft.recognition)
+        return touching(space.free_near(z + tolerance.OFF_PLANE, wanted), wanted), wanted
+    pocket = parent_of(feature, state.recognition)
     over = (
-        [b for b in draft.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW]
+        [b for b in state.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW]
         if pocket
         else []
     )
@@ -391,11 +399,11 @@ def _top_room(
     return over[0].boundary, wanted
 
 
-def _wishes_profile(
-    draft: PanelPlanState, stage: Stage, features: Sequence[Feature]
+def _profile_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     found = []
-    space = draft.space
+    space = state.space
     for feature in features:
         if feature.kind in stage.on:
             outline = space.silhouette()
@@ -404,7 +412,7 @@ def _wishes_profile(
                 continue
             requirement = ToolRequirement(
                 depth=space.top - space.bottom,
-                room=space.around().minus(outline),
+                envelope_area=space.around().minus(outline),
                 wanted=wanted,
                 corner_radius=0.0,
                 near=NEAR_ROUGH,
@@ -418,7 +426,7 @@ def _wishes_profile(
                     feature=feature.id,
                     requirement=requirement,
                     width=side,
-                    place=(float(space.blank_low[0]), float(space.blank_low[1])),
+                    position=(float(space.blank_low[0]), float(space.blank_low[1])),
                     faces=feature.with_role("wall", "corner"),
                     height=space.top - space.bottom,
                 )
@@ -426,22 +434,24 @@ def _wishes_profile(
     return found
 
 
-WISHES: Mapping[str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]] = {
-    "face": _wishes_face,
-    "rough": _wishes_rough,
-    "rest": _wishes_rest,
-    "top": _wishes_top,
-    "floor": _wishes_floor,
-    "wall": _wishes_wall,
-    "corner": _wishes_corner,
-    "foot": _wishes_foot,
-    "profile_rough": _wishes_profile,
-    "profile_finish": _wishes_profile,
+TASK_MAKERS: Mapping[
+    str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]
+] = {
+    "face": _face_tasks,
+    "rough": _rough_tasks,
+    "rest": _rest_tasks,
+    "top": _top_tasks,
+    "floor": _floor_tasks,
+    "wall": _wall_tasks,
+    "corner": _corner_tasks,
+    "foot": _foot_tasks,
+    "profile_rough": _profile_tasks,
+    "profile_finish": _profile_tasks,
 }
 """The rule behind each word that a typical plan gives for its cutter."""
 
 
-def _wish(
+def _task(
     stage: Stage,
     feature: Feature,
     bands: tuple[Band, ...],
@@ -454,7 +464,7 @@ def _wish(
         id=f"{stage.kind}-{feature.id}",
         stage=stage,
         feature=feature.id,
-        place=(float(middle[0]), float(middle[1])),
+        position=(float(middle[0]), float(middle[1])),
         requirement=requirement,
         faces=faces,
         height=bands[0].top - bands[-1].bottom,
@@ -467,19 +477,19 @@ def _kept_off(area: Region, distance: float) -> Region:
     return area.offset(-distance) or area
 
 
-def _depth(draft: PanelPlanState, bands: tuple[Band, ...]) -> float:
+def _depth(state: PanelPlanState, bands: tuple[Band, ...]) -> float:
     """Return how deep below the part's top a pocket's lowest floor lies: the walls around may stand as high as that."""
-    return draft.space.top - bands[-1].bottom
+    return state.space.top - bands[-1].bottom
 
 
-def _wall_task(draft: PanelPlanState, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
+def _wall_task(state: PanelPlanState, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
     return ToolRequirement(
-        depth=_depth(draft, bands),
-        room=bands[-1].boundary,
+        depth=_depth(state, bands),
+        envelope_area=bands[-1].boundary,
         wanted=bands[-1].wanted,
         corner_radius=floor_fillet(feature),
         exact=True,
-        radius=number(feature, "corner_radius") * draft.settings.corner_share,
+        radius=number(feature, "corner_radius") * state.settings.corner_share,
         missable=SHARP,
         near=NEAR_WALL,
         cusps=True,
@@ -487,18 +497,18 @@ def _wall_task(draft: PanelPlanState, feature: Feature, bands: tuple[Band, ...])
 
 
 def _with_known_fillet(
-    draft: PanelPlanState, stage: Stage, feature: Feature, requirement: ToolRequirement
+    state: PanelPlanState, stage: Stage, feature: Feature, requirement: ToolRequirement
 ) -> ToolRequirement:
     """Return a wall's requirement with the fillet that cutters have: when none has it exactly, the next smaller, and a finding."""
     radii = {
         t.corner_radius
-        for t in catalogue(draft, stage)
+        for t in catalogue(state, stage)
         if not requirement.radius or t.radius <= requirement.radius + tolerance.COINCIDENT
     }
     if not radii or any(abs(r - requirement.corner_radius) <= tolerance.COINCIDENT for r in radii):
         return requirement
     next_smaller = max((r for r in radii if r < requirement.corner_radius), default=0.0)
-    draft.findings.append(
+    state.findings.append(
         warning(
             "route.fillet",
             f"{feature.id}: no cutter has a corner radius of {trimmed(requirement.corner_radius, 3)} mm; "
@@ -511,51 +521,51 @@ def _with_known_fillet(
     return replace(requirement, corner_radius=next_smaller)
 
 
-def _smallest(draft: PanelPlanState, stage: Stage, requirement: ToolRequirement) -> float:
+def _smallest(state: PanelPlanState, stage: Stage, requirement: ToolRequirement) -> float:
     """Return the radius of the smallest cutter that gets to the foot of a wall."""
     found = candidates(
         replace(requirement, missable=1.0, cusps=False, near=0.0),
-        catalogue(draft, stage),
-        draft.settings.reach_clearance,
-        draft.progress,
+        catalogue(state, stage),
+        state.settings.reach_clearance,
+        state.progress,
     ).tools
     return min((t.radius for t in found), default=math.inf)
 
 
 def with_falling_sizes(
-    draft: PanelPlanState, tasks: Sequence[OperationTask]
+    state: PanelPlanState, tasks: Sequence[OperationTask]
 ) -> list[OperationTask]:
     """Return the tasks with cutters put in where a corner's cutter is much smaller than the one that was there before."""
     out: list[OperationTask] = []
     for task in tasks:
         if task.stage.cutter in ("rest", "corner"):
-            before = draft.tools.get(
+            before = state.tools.get(
                 f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}"
             )
             n = 1
             while (
                 before is not None
-                and before.diameter > draft.settings.falling * draft.tools[task.id].diameter
+                and before.diameter > state.settings.falling * state.tools[task.id].diameter
             ):
-                step = _between(draft, task, before)
+                step = _between(state, task, before)
                 if step is None:
                     break
                 more = replace(task, id=f"{task.id}-{n}")
-                draft.tools[more.id] = before = step
+                state.tools[more.id] = before = step
                 out.append(more)
                 n += 1
         out.append(task)
     return out
 
 
-def _between(draft: PanelPlanState, task: OperationTask, before: Tool) -> Tool | None:
-    goal = draft.tools[task.id]
+def _between(state: PanelPlanState, task: OperationTask, before: Tool) -> Tool | None:
+    goal = state.tools[task.id]
     fits = [
         t
-        for t in catalogue(draft, task.stage)
-        if goal.diameter < t.diameter <= before.diameter / draft.settings.falling**0.5
+        for t in catalogue(state, task.stage)
+        if goal.diameter < t.diameter <= before.diameter / state.settings.falling**0.5
         and t.corner_radius <= goal.corner_radius
-        and depth_reached(t) >= task.requirement.depth + draft.settings.reach_clearance
+        and depth_reached(t) >= task.requirement.depth + state.settings.reach_clearance
     ]
     return max(
         fits, key=lambda t: (t.diameter, -depth_reached(t), t.corner_radius, t.name), default=None

@@ -331,7 +331,7 @@ def _wall_faces(feature: Feature, island: Feature | None) -> tuple[int, ...]:
 
 
 def _rib_top(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
-    tags, frame, beside = feature.with_role("top"), space.setup.frame, tolerance.BESIDE_PLANE
+    tags, frame, beside = feature.with_role("top"), space.setup.frame, tolerance.OFF_PLANE
     if not tags:
         raise Refused(f"{feature.id}: it has no top face; give it one or suppress {operation.id}")
     z = float(space.centre(tags[0])[2])

@@ -29,7 +29,7 @@ AROUND = 150.0
 """mm: how far free space is looked at around the blank; more than two diameters of the largest cutter."""
 
 NEAR = 60.0
-"""mm: how far free space is looked at around a top; more than a cutter of the largest diameter and its way in."""
+"""mm: how far free space is looked at around a top; more than a cutter of the largest diameter and its path in."""
 
 
 class SectionSource(Protocol):
@@ -57,7 +57,7 @@ class Band:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Ceiling:
-    """A face that looks down somewhere: the highest place where it does, its highest place at all, and its box in plan."""
+    """A face that looks down somewhere: the highest position where it does, its highest position at all, and its box in plan."""
 
     hangs: float
     top: float
@@ -69,7 +69,7 @@ class _Ceiling:
 class SetupSpace:
     """A part in its blank as a setup sees it; every height and region is in the setup's frame.
 
-    What is asked of it again for each operation, the bands of a pocket and what hangs over, is worked out once.
+    What is queried of it again for each operation, the bands of a pocket and what hangs over, is worked out once.
     """
 
     part: SectionSource
@@ -116,7 +116,7 @@ class SetupSpace:
         """Return the blank's area and plenty around it."""
         return Region.rectangle(*(self.blank_low[:2] - AROUND), *(self.blank_high[:2] + AROUND))
 
-    def standing_over(self, z: float, near: Region) -> Region:
+    def material_over(self, z: float, near: Region) -> Region:
         """Return the part's material at a height, with all that hangs over it near a region: what an upright cutter must stay out of.
 
         A section through a recess in a wall shows free space that no upright cutter gets into; the section just over the recess closes it.
@@ -131,9 +131,9 @@ class SetupSpace:
             if c.hangs > z and (c.low <= high).all() and (c.high >= low).all()
         ]
         above = [
-            self.section(c + tolerance.BESIDE_PLANE)
+            self.section(c + tolerance.OFF_PLANE)
             for c in _distinct(over)
-            if c + tolerance.BESIDE_PLANE < self.top
+            if c + tolerance.OFF_PLANE < self.top
         ]
         return union_all([material, *above]) if above else material
 
@@ -160,15 +160,15 @@ class SetupSpace:
         return self._ceilings
 
     def free_near(self, z: float, region: Region) -> Region:
-        """Return where nothing of the part stands at a height or hangs over it, around a region by plenty for a cutter over it."""
+        """Return where nothing of the part is at a height or hangs over it, around a region by plenty for a cutter over it."""
         low, high = region.box()
-        room = Region.rectangle(*(low - NEAR), *(high + NEAR))
-        return room.minus(self.standing_over(z, room))
+        window = Region.rectangle(*(low - NEAR), *(high + NEAR))
+        return window.minus(self.material_over(z, window))
 
     def silhouette(self) -> Region:
         """Return the part's outline seen from above, its openings filled."""
-        beside = tolerance.BESIDE_PLANE
-        heights = (self.bottom + beside, 0.5 * (self.bottom + self.top), self.top - beside)
+        margin = tolerance.OFF_PLANE
+        heights = (self.bottom + margin, 0.5 * (self.bottom + self.top), self.top - margin)
         return union_all([self.section(z).holes_filled() for z in heights]).holes_filled()
 
     def top_of(self, feature: Feature) -> float:
@@ -235,7 +235,7 @@ class SetupSpace:
         while len(bands) + 1 < len(breaks):
             high, low = breaks[len(bands) : len(bands) + 2]
             z = (
-                low + tolerance.BESIDE_PLANE
+                low + tolerance.OFF_PLANE
                 if low in peaks
                 else _section_height(high, low, min(rim, top), fillets.get(low, 0.0))
             )
@@ -260,14 +260,14 @@ class SetupSpace:
             breaks.insert(len(bands) + 1, peak)
             # Over a peak the fillets of floors on both sides meet: that much of it is taken as the section at the peak shows it.
             rounded = above_fillets(peak, fillets)
-            if rounded > peak + tolerance.BESIDE_PLANE:
+            if rounded > peak + tolerance.OFF_PLANE:
                 peaks.add(peak)
                 if rounded < high - tolerance.SEW:
                     breaks.insert(len(bands) + 1, rounded)
         return tuple(bands)
 
     def _peak_in(self, band: Band, z: float, feature: Feature, rounding: float) -> float | None:
-        """Return the height of the highest edge that stands in a band below the section at `z` that speaks for it, or None.
+        """Return the height of the highest edge that is in a band below the section at `z` that speaks for it, or None.
 
         The part's edges over the band's plan area, the strip of the fillets at its walls left out: a lip between two pockets that share
         their space above it, the floor of a neighbour that broke through the wall between them. Below such an edge the section is wrong.
@@ -297,7 +297,7 @@ class SetupSpace:
         points: list[Floats],
         sunken: list[Floats],
     ) -> Band:
-        material = self.standing_over(z, self._over(feature))
+        material = self.material_over(z, self._over(feature))
         if feature.kind == "open_pocket":
             wanted = holding(self.silhouette().minus(material), points)
             boundary = (
@@ -317,8 +317,8 @@ class SetupSpace:
 
     def _above_foot(self, feature: Feature, top: float, foot: float) -> Band:
         """Return the free space around a pocket over the fillets at its foot: what bounds it where its rim is lower than they are high."""
-        z = min(foot + tolerance.BESIDE_PLANE, top - tolerance.BESIDE_PLANE)
-        free = self.around().minus(self.standing_over(z, self._over(feature)))
+        z = min(foot + tolerance.OFF_PLANE, top - tolerance.BESIDE_PLANE)
+        free = self.around().minus(self.part_above(z, self._over(feature)))
         inside = free.intersect(self.silhouette()) if feature.kind == "open_pocket" else free
         return Band(top=top, bottom=foot, wanted=inside, boundary=free)
 
@@ -358,9 +358,7 @@ def _up_to_walls(band: Band, over: Band, on_floor: Floats, grow: float) -> Band:
     def grown(area: Region, bound: Region) -> Region:
         own = holding(area, [on_floor])
         rest = area.minus(own.offset(tolerance.SEW))
-        return (
-            own.offset(grow).intersect(bound).minus(rest.offset(tolerance.BESIDE_PLANE)).union(rest)
-        )
+        return own.offset(grow).intersect(bound).minus(rest.offset(tolerance.OFF_PLANE)).union(rest)
 
     return replace(
         band,
@@ -392,7 +390,7 @@ def floor_fillet(feature: Feature) -> float:
 
 
 def parent_of(feature: Feature, recognition: Recognition) -> Feature | None:
-    """Return the feature that a feature stands in or is sunk into, or None."""
+    """Return the feature that a feature is in or is sunk into, or None."""
     for name in ("in", "nested_in"):
         value = feature.sizes.get(name, feature.attributes.get(name))
         for other in recognition:
@@ -410,7 +408,7 @@ def holding(region: Region, points: Iterable[Floats]) -> Region:
 
 
 def enclosed(material: Region, points: Iterable[Floats]) -> Region:
-    """Return the spaces that material encloses and that hold one of the points (2,), without what stands in them.
+    """Return the spaces that material encloses and that hold one of the points (2,), without what is in them.
 
     They are holes of its pieces, so their curves are the section's own.
     """
@@ -419,12 +417,12 @@ def enclosed(material: Region, points: Iterable[Floats]) -> Region:
     for hole in (h.reversed() for p in material.pieces for h in p.holes):
         space = Region((Piece(hole),))
         if space.contains(where).any():
-            standing = tuple(
+            island_walls = tuple(
                 p.outer.reversed()
                 for p in material.pieces
                 if space.contains(p.outer.points[:1]).all()
             )
-            inner = Region((Piece(hole, standing),))
+            inner = Region((Piece(hole, island_walls),))
             if inner.contains(where).any():
                 found.append(inner.pieces[0])
     return Region(tuple(found))
@@ -485,14 +483,14 @@ def runs(curve: Curve, keep: Bools) -> list[Curve]:
 
 
 def on_rim(curve: Curve, region: Region) -> Bools:
-    """Say of each segment of a curve (n,) whether its middle lies on the boundary of a region."""
+    """Return for each segment of a curve (n,) whether its middle lies on the boundary of a region."""
     segments = curve.segments()
     middles = segments.at(np.arange(len(segments)), 0.5 * segments.length)
     return np.abs(region.signed_distance(middles)) < tolerance.SEW
 
 
 def same_curve(a: Curve, b: Curve) -> bool:
-    """Say whether two curves run along each other from end to end, both closed or both open."""
+    """Return whether two curves run along each other from end to end, both closed or both open."""
     if a.closed != b.closed or abs(a.length - b.length) >= tolerance.SEW:
         return False
     if a.closed and abs(a.area - b.area) >= tolerance.SEW * max(a.length, 1.0):
@@ -512,11 +510,11 @@ def _distinct(heights: Iterable[float]) -> list[float]:
 def _section_height(high: float, low: float, rim: float, fillet: float) -> float:
     """Return the height of the section that speaks for a band: over the fillet at its foot and below the lowest rim."""
     ceiling = min(high, rim)
-    if ceiling - low <= tolerance.BESIDE_PLANE:
-        return rim - tolerance.BESIDE_PLANE
+    if ceiling - low <= tolerance.OFF_PLANE:
+        return rim - tolerance.OFF_PLANE
     foot = low + fillet
     return (
         0.5 * (foot + ceiling)
-        if ceiling - foot > tolerance.BESIDE_PLANE
-        else ceiling - 0.5 * tolerance.BESIDE_PLANE
+        if ceiling - foot > tolerance.OFF_PLANE
+        else ceiling - 0.5 * tolerance.OFF_PLANE
     )

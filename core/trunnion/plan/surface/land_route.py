@@ -11,12 +11,12 @@ import numpy as np
 from trunnion.findings import BadInput, face_tags, info
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.end_mills import MISSED, LandCutters, end_mills_for
-from trunnion.plan.freeform.finishing.rest import BESIDE
+from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE
 from trunnion.plan.freeform.lands import (
     ABOVE_TOOL,
     AROUND_TOOL,
-    BESIDE_SIDES,
     LAND,
+    LATERAL,
     REST_LAND,
     STOCK,
     Land,
@@ -24,7 +24,7 @@ from trunnion.plan.freeform.lands import (
     PartAbove,
     lands_of,
 )
-from trunnion.plan.freeform.reach import AreaSamples, places_on, reached
+from trunnion.plan.freeform.reach import AreaSamples, reached, samples_on
 from trunnion.plan.surface.plan_state import SurfacePlanState, face_name
 from trunnion.progress import Progress
 from trunnion.settings import Value
@@ -39,7 +39,7 @@ LEAST = 0.02
 SLITS = 0.01
 """Share of a land that balls may come to and no end mill; a land with more of it stays with them as a whole."""
 FEW = 200
-"""Places on a face that say whether end mills finish all of it."""
+"""Positions on a face that say whether end mills finish all of it."""
 APART = 0.1
 """mm that an end mill keeps more than roughing's allowance from sides that are not finished yet."""
 
@@ -51,42 +51,42 @@ class FinishedLands:
     lands: tuple[LandCutters, ...] = ()
     tags: frozenset[int] = frozenset()
 
-    def without_feet(self, places: AreaSamples) -> AreaSamples:
-        """Return the places that are not on the feet of sides that end mills finish."""
-        done = np.zeros(len(places), dtype=bool)
+    def without_feet(self, samples: AreaSamples) -> AreaSamples:
+        """Return the positions that are not on the feet of sides that end mills finish."""
+        done = np.zeros(len(samples), dtype=bool)
         for each in self.lands:
-            done |= each.finishes(places)
-        return places.of(~done)
+            done |= each.finishes(samples)
+        return samples.of(~done)
 
 
 def plan_lands(
-    draft: SurfacePlanState, tags: Collection[int], balls: Sequence[Tool], progress: Progress
+    state: SurfacePlanState, tags: Collection[int], balls: Sequence[Tool], progress: Progress
 ) -> FinishedLands:
     """Add operations on the level lands among faces; `balls` would finish them instead."""
-    if not draft.chosen.lands or not {LAND, REST_LAND} <= set(draft.stages):
+    if not state.settings.lands or not {LAND, REST_LAND} <= set(state.stages):
         return FinishedLands()
-    chosen, route = draft.chosen, draft.route
-    keeping = LandClearances(
-        beside=chosen.rough_allowance + APART,
-        around=chosen.rough_allowance + BESIDE,
+    settings, route = state.settings, state.route
+    clearances = LandClearances(
+        lateral=settings.rough_allowance + APART,
+        around=settings.rough_allowance + HOLDER_CLEARANCE,
         above=route.reach_clearance,
     )
-    mills = [t for t in draft.cutters("finish") if t.diameter <= route.largest]
+    mills = [t for t in state.cutters("finish") if t.diameter <= route.largest]
     try:
-        standing = PartAbove(draft.space, progress)
+        part_above = PartAbove(state.space, progress)
         found = end_mills_for(
-            standing,
-            lands_of(draft.space, tags),
+            part_above,
+            lands_of(state.space, tags),
             mills,
             min((t.radius for t in balls), default=0.0),
-            chosen.share,
-            keeping,
-            [o.cutter for o in draft.operations],
+            settings.share,
+            clearances,
+            [o.cutter for o in state.operations],
             progress,
         )
-        found = tuple(c for c in found if not _is_for_balls(draft, c, balls))
+        found = tuple(c for c in found if not _is_for_balls(state, c, balls))
     except BadInput as reason:
-        draft.findings.append(
+        state.findings.append(
             info(
                 "route.lands",
                 f"level faces are left to balls: {reason}",
@@ -95,19 +95,19 @@ def plan_lands(
         )
         return FinishedLands()
     for c in found:
-        if c.left.area > MISSED:
-            draft.findings.append(
+        if c.remaining.area > MISSED:
+            state.findings.append(
                 info(
                     "route.land-left",
-                    f"{trimmed(c.left.area, 1)} mm2 of the land at {trimmed(c.land.z, 2)} stay in "
+                    f"{trimmed(c.remaining.area, 1)} mm2 of the land at {trimmed(c.land.z, 2)} stay in "
                     "corners that no end mill gets into",
                     *face_tags(c.land.tags),
                     remedy="finish them by other means",
                 )
             )
-    low = _low_sides(draft, tags, found)
-    for kind, pairs, beside in (
-        (LAND, [(c.tool, c) for c in found], keeping.beside),
+    low = _low_sides(state, tags, found)
+    for kind, pairs, lateral in (
+        (LAND, [(c.tool, c) for c in found], clearances.lateral),
         (REST_LAND, [(c.rest, c) for c in found if c.rest is not None], 0.0),
     ):
         by_name = {tool.name: tool for tool, _ in pairs}
@@ -117,45 +117,45 @@ def plan_lands(
                 t for t, c in low.items() if c in mine and (kind == REST_LAND or c.rest is None)
             ]
             _add(
-                draft,
+                state,
                 kind,
                 tool,
                 [c.land for c in mine],
                 sides,
-                {BESIDE_SIDES: beside, AROUND_TOOL: keeping.around, ABOVE_TOOL: keeping.above},
+                {LATERAL: lateral, AROUND_TOOL: clearances.around, ABOVE_TOOL: clearances.above},
             )
     return FinishedLands(
         lands=found, tags=frozenset({t for c in found for t in c.land.tags} | set(low))
     )
 
 
-def _is_for_balls(draft: SurfacePlanState, chosen: LandCutters, balls: Sequence[Tool]) -> bool:
-    """Say whether balls come to too much of a land that no end mill does: into slits that run out from it."""
-    if chosen.left.area <= MISSED:
+def _is_for_balls(state: SurfacePlanState, cutters: LandCutters, balls: Sequence[Tool]) -> bool:
+    """Return whether balls come to too much of a land that no end mill does: into slits that run out from it."""
+    if cutters.remaining.area <= MISSED:
         return False
-    places = places_on(draft.space.skin, chosen.land.tags)
-    places = places.of(chosen.left.contains(places.point[:, :2]))
-    seen = np.zeros(len(places), dtype=bool)
+    samples = samples_on(state.space.skin, cutters.land.tags)
+    samples = samples.of(cutters.remaining.contains(samples.point[:, :2]))
+    seen = np.zeros(len(samples), dtype=bool)
     for ball in sorted(balls, key=lambda t: t.diameter):
-        seen[~seen] = reached(draft.space, places.of(~seen), ball, draft.route.reach_clearance)
-    return float(seen.sum()) * places.area > max(MISSED, SLITS * chosen.land.region.area)
+        seen[~seen] = reached(state.space, samples.of(~seen), ball, state.route.reach_clearance)
+    return float(seen.sum()) * samples.area > max(MISSED, SLITS * cutters.land.region.area)
 
 
 def _low_sides(
-    draft: SurfacePlanState, tags: Collection[int], lands: Sequence[LandCutters]
+    state: SurfacePlanState, tags: Collection[int], lands: Sequence[LandCutters]
 ) -> dict[int, LandCutters]:
     """Return the upright faces that the end mills of a land finish all over, with that land."""
     found = {}
     for tag in sorted(tags) if lands else ():
-        places = places_on(draft.space.skin, (tag,), FEW)
-        done = next((c for c in lands if len(places) and c.finishes(places).all()), None)
+        samples = samples_on(state.space.skin, (tag,), FEW)
+        done = next((c for c in lands if len(samples) and c.finishes(samples).all()), None)
         if done is not None:
             found[tag] = done
     return found
 
 
 def _add(
-    draft: SurfacePlanState,
+    state: SurfacePlanState,
     kind: str,
     tool: Tool,
     lands: Sequence[Land],
@@ -163,18 +163,18 @@ def _add(
     choices: dict[str, Value],
 ) -> None:
     tags = tuple(sorted([*(t for land in lands for t in land.tags), *sides]))
-    stock = draft.chosen.rough_allowance
+    stock = state.settings.rough_allowance
     depth = max(stock / max(1, math.ceil(stock / DEEPEST)), LEAST)
     width = WIDTH * (tool.diameter - 2.0 * tool.corner_radius)
     rules = (
-        draft.stages[kind].rule,
+        state.stages[kind].rule,
         f"{tool.name} over {trimmed(sum(land.region.area for land in lands), 0)} mm2: "
         f"{trimmed(width, 2)} mm between passes, {trimmed(depth, 2)} mm deep.",
     )
-    draft.add(
+    state.add(
         kind,
         face_name(tags),
-        draft.feature_of(tags),
+        state.feature_of(tags),
         tool,
         tags,
         depth,

@@ -23,7 +23,7 @@ from trunnion.shop import Shop, Stage
 
 @dataclass(slots=True)
 class SurfacePlanState:
-    """What is known while one setup is planned; `unsampled` are the faces so small that no place of their area lies on them."""
+    """What is known while one setup is planned; `unsampled` are the faces so small that no position of their area lies on them."""
 
     space: SurfaceSpace
     around: ClearanceScene
@@ -33,7 +33,7 @@ class SurfacePlanState:
     machine: Machine
     shop: Shop
     route: RouteSettings
-    chosen: SurfaceRouteSettings
+    settings: SurfaceRouteSettings
     stages: dict[str, Stage]
     operations: list[Operation] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)

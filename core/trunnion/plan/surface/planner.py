@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class SurfacePlanner:
-    """Plans layers, outlines, lands and areas; its plane operations are driven by how high the part stands."""
+    """Plans layers, outlines, lands and areas; its plane operations are driven by how high the part is."""
 
     name, noun = "surface", "parts of curved surfaces"
     settings: tuple[type, ...] = (RouteSettings, SurfaceRouteSettings)
@@ -41,7 +41,7 @@ class SurfacePlanner:
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_surface_route`."""
         first, progress = job.setups[0], job.progress
-        curved = job.chosen(SurfaceRouteSettings).consistent()
+        curved = job.settings_of(SurfaceRouteSettings).consistent()
         skin = job.context.skin(tolerance.CHORD, progress.part(0.0, 0.5))
         space = SurfaceSpace.of(job.context.part, skin, job.blank, first)
         around = job.context.around(first, space.frame, space.skin, progress)
@@ -52,7 +52,7 @@ class SurfacePlanner:
             job.shop,
             space,
             around,
-            job.chosen(RouteSettings),
+            job.settings_of(RouteSettings),
             curved,
             progress.part(0.5, 1.0),
         )
@@ -76,4 +76,4 @@ def _plane_driven(
 ) -> OperationDrive:
     space = space_from(operation.direction, tolerance.CHORD, scene, progress)
     drive = plane_drive_of(operation, space, scene.stock(space.setup), progress, scene.process)
-    return OperationDrive(setup=space.setup, drive=drive, told=drive)
+    return OperationDrive(setup=space.setup, drive=drive, identity=drive)

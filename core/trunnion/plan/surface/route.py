@@ -36,10 +36,10 @@ from trunnion.plan.freeform.finishing.areas import (
 )
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
 from trunnion.plan.freeform.lands import LAND, REST_LAND
-from trunnion.plan.freeform.reach import AreaSamples, clear_beside, leans, places_on, reached
+from trunnion.plan.freeform.reach import AreaSamples, is_clear_of_walls, leans, reached, samples_on
 from trunnion.plan.freeform.roughing.directions import sides_for
 from trunnion.plan.freeform.roughing.hollows import hollow_depths
-from trunnion.plan.freeform.roughing.layers import left_on_walls
+from trunnion.plan.freeform.roughing.layers import remaining_on_walls
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.tilted_reach import SAMPLES as LEANING_SAMPLES
 from trunnion.plan.freeform.tilted_reach import leaning_cutter
@@ -78,9 +78,9 @@ MISSED = 1.0
 MOST = 0.9
 """Share of a face that an upright cutter must reach; else the face counts as hidden from above."""
 LARGEST_LEANING = 16.0
-"""mm: larger balls have no room to lean on parts that need it."""
+"""mm: larger balls have no space to lean on parts that need it."""
 FEW = 200
-"""Places along a wall that say whether a tool has room beside it."""
+"""Positions along a wall that say whether a tool has space beside it."""
 SLENDER = 4
 """How many of the most slender cutters say what is hidden: larger ones reach no more."""
 FALLING = ("rough", "semi")
@@ -99,7 +99,7 @@ def make_surface_route(
     space: SurfaceSpace,
     around: ClearanceScene,
     route: RouteSettings,
-    chosen: SurfaceRouteSettings,
+    settings: SurfaceRouteSettings,
     progress: Progress,
 ) -> ProcessTree:
     """Return the process of a part of curved surfaces: operations in cutting order, tools numbered in the order of use.
@@ -114,7 +114,7 @@ def make_surface_route(
         return ProcessTree(
             plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings)
         )
-    draft = SurfacePlanState(
+    state = SurfacePlanState(
         space=space,
         around=around,
         recognition=recognition,
@@ -123,14 +123,14 @@ def make_surface_route(
         shop=shop,
         setup=setups[0],
         route=route,
-        chosen=chosen,
+        settings=settings,
         stages={s.kind: s for s in plan.stages},
     )
-    _plan(draft, progress)
-    _add_slivers(draft)
+    _plan(state, progress)
+    _add_slivers(state)
     return process_of(
-        _in_order(draft, plan.stages),
-        draft.findings,
+        _in_order(state, plan.stages),
+        state.findings,
         plan=plan,
         material=material,
         setups=setups,
@@ -138,158 +138,160 @@ def make_surface_route(
     )
 
 
-def _plan(draft: SurfacePlanState, progress: Progress) -> None:
-    space, part = draft.space, draft.space.part
+def _plan(state: SurfacePlanState, progress: Progress) -> None:
+    space, part = state.space, state.space.part
     outside = blank_faces(part, space.blank)
-    mine = sorted({tag for f in draft.recognition for tag in f.tags} - set(outside))
+    mine = sorted({tag for f in state.recognition for tag in f.tags} - set(outside))
     progress.at(0.0, "looking at faces")
-    places = places_on(space.skin, tuple(mine))
-    upright = walls_of(places, mine)
-    walls = on_outline(space, places, upright, progress)
+    samples = samples_on(space.skin, tuple(mine))
+    upright = walls_of(samples, mine)
+    walls = on_outline(space, samples, upright, progress)
     for tags in progress.each(connected(walls, part.graph())):
-        _outline(draft, tags)
-    level = plan_lands(draft, set(mine) - set(walls), _finishers(draft), progress.part(0.0, 0.05))
+        _outline(state, tags)
+    level = plan_lands(state, set(mine) - set(walls), _finishers(state), progress.part(0.0, 0.05))
     hidden = (
-        _hidden(draft, places, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1))
-        if draft.machine.rotary
+        _hidden(state, samples, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1))
+        if state.machine.rotary
         else ()
     )
     areas = [
-        *areas_of(draft.recognition, part.graph(), {*outside, *walls, *level.tags, *hidden}),
-        *hidden_areas(draft.recognition, part.graph(), hidden),
+        *areas_of(state.recognition, part.graph(), {*outside, *walls, *level.tags, *hidden}),
+        *hidden_areas(state.recognition, part.graph(), hidden),
     ]
     for n, area in enumerate(areas):
         share = progress.part(0.1 + 0.7 * n / len(areas), 0.1 + 0.7 * (n + 1) / len(areas))
         share.at(0.0, f"cutter for {area.id}")
         if area.hidden:
-            _hidden_area(draft, area, share)
+            _hidden_area(state, area, share)
         else:
-            _area(draft, area, level, share)
+            _area(state, area, level, share)
     progress.at(0.8, "roughing")
-    _rough(draft, space, float(space.skin.points[:, 2].min()), "part", progress.part(0.8, 0.85))
+    _rough(state, space, float(space.skin.points[:, 2].min()), "part", progress.part(0.8, 0.85))
     if hidden:
-        seen = places.of(np.isin(places.face, hidden))
+        seen = samples.of(np.isin(samples.face, hidden))
         for n, side in enumerate(
             sides_for(
                 space,
-                draft.setup,
-                draft.around,
+                state.setup,
+                state.around,
                 seen,
-                _finishers(draft),
-                draft.route.reach_clearance,
+                _finishers(state),
+                state.route.reach_clearance,
                 progress.part(0.85, 0.98),
             ),
             1,
         ):
-            _rough(draft, side.space, side.bottom, f"side-{n}", progress.part(0.98, 1.0))
+            _rough(state, side.space, side.bottom, f"side-{n}", progress.part(0.98, 1.0))
 
 
-def _add_slivers(draft: SurfacePlanState) -> None:
+def _add_slivers(state: SurfacePlanState) -> None:
     """Cut the patches that are too small to be planned by themselves with what lies around them; tell of those that stay."""
-    part = draft.space.part
-    mine = (slivers_of(draft.recognition) | draft.unsampled) & set(part.tags) - set(
-        blank_faces(part, draft.space.blank)
+    part = state.space.part
+    mine = (slivers_of(state.recognition) | state.unsampled) & set(part.tags) - set(
+        blank_faces(part, state.space.blank)
     )
-    draft.operations, left = with_slivers(draft.operations, mine, part.graph(), draft.space.skin)
-    if left:
-        draft.findings.append(
+    state.operations, remaining = with_slivers(
+        state.operations, mine, part.graph(), state.space.skin
+    )
+    if remaining:
+        state.findings.append(
             warning(
                 "route.not-planned",
-                f"{len(left)} small faces lie beside nothing that is cut",
-                *face_tags(left),
+                f"{len(remaining)} small faces lie beside nothing that is cut",
+                *face_tags(remaining),
                 remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves",
             )
         )
 
 
 def _hidden(
-    draft: SurfacePlanState, places: AreaSamples, tags: set[int], progress: Progress
+    state: SurfacePlanState, samples: AreaSamples, tags: set[int], progress: Progress
 ) -> tuple[int, ...]:
     """Return the faces that no upright cutter finishes most of."""
-    seen = np.zeros(len(places), dtype=bool)
-    slender = sorted(_finishers(draft), key=lambda t: (t.diameter, -depth_reached(t)))[:SLENDER]
+    seen = np.zeros(len(samples), dtype=bool)
+    slender = sorted(_finishers(state), key=lambda t: (t.diameter, -depth_reached(t)))[:SLENDER]
     for tool in slender:
-        seen |= reached(draft.space, places, tool, draft.route.reach_clearance, 0.0, progress)
-    return tuple(sorted(t for t in tags if seen[places.face == t].mean() < MOST))
+        seen |= reached(state.space, samples, tool, state.route.reach_clearance, 0.0, progress)
+    return tuple(sorted(t for t in tags if seen[samples.face == t].mean() < MOST))
 
 
-def _leaning_finishers(draft: SurfacePlanState) -> tuple[Tool, ...]:
+def _leaning_finishers(state: SurfacePlanState) -> tuple[Tool, ...]:
     """Return the longest ball of each diameter, the smallest first."""
     longest = {
         t.diameter: t
-        for t in sorted(_finishers(draft), key=lambda t: (t.diameter, depth_reached(t), t.name))
+        for t in sorted(_finishers(state), key=lambda t: (t.diameter, depth_reached(t), t.name))
     }
     return tuple(longest[d] for d in sorted(longest) if d <= LARGEST_LEANING)
 
 
 def _rough(
-    draft: SurfacePlanState, space: SurfaceSpace, bottom: float, name: str, progress: Progress
+    state: SurfacePlanState, space: SurfaceSpace, bottom: float, name: str, progress: Progress
 ) -> None:
     """Plan roughing by layers with a large cutter from a direction, and with falling sizes what those before left: down to about the size
     of the smallest finishing cutter, so that this one finds little, and on into hollows that are too narrow for that size."""
     size, deep = float((space.high - space.low)[:2].min()), float(space.high[2]) - bottom
-    most = min(draft.route.largest, ROUGH_SHARE * size)
-    tool = _rougher(draft, most, deep, draft.chosen.rough_cutter)
+    most = min(state.route.largest, ROUGH_SHARE * size)
+    tool = _rougher(state, most, deep, state.settings.rough_cutter)
     if tool is None:
-        draft.findings.append(
+        state.findings.append(
             error(
                 "route.no-cutter",
                 f"no roughing cutter up to D {trimmed(most, 1)} reaches {trimmed(deep, 1)} mm deep",
-                draft.recognition.features[0].id,
+                state.recognition.features[0].id,
                 remedy="add a longer cutter to the tools folder",
             )
         )
         return
-    _add_rough(draft, "rough", name, tool, space, bottom)
+    _add_rough(state, "rough", name, tool, space, bottom)
     smallest = min(
-        (o.cutter.diameter for o in draft.operations if o.kind in ("finish", LAND, REST_LAND)),
+        (o.cutter.diameter for o in state.operations if o.kind in ("finish", LAND, REST_LAND)),
         default=tool.diameter,
     )
     n = 1
     while True:
-        rest = _rougher(draft, REST_SHARE * tool.diameter, deep, "")
+        rest = _rougher(state, REST_SHARE * tool.diameter, deep, "")
         if rest is None or rest.diameter < LEAST_REST:
             break
         if tool.diameter > NEAR_FINISH * smallest:
-            _add_rough(draft, "rest", f"{name}-{n}", rest, space, bottom)
+            _add_rough(state, "rest", f"{name}-{n}", rest, space, bottom)
         else:
-            opened = _hollows(draft, space, tool, progress) - _hollows(draft, space, rest, progress)
+            opened = _hollows(state, space, tool, progress) - _hollows(state, space, rest, progress)
             if opened < OPENED * rest.diameter**2:
                 break
             why = (
                 f"It opens hollows of {trimmed(opened, 0)} mm2 that {tool.name} doesn't come into."
             )
-            _add_rough(draft, "rest", f"{name}-{n}", rest, space, bottom, why)
+            _add_rough(state, "rest", f"{name}-{n}", rest, space, bottom, why)
         tool, n = rest, n + 1
 
 
-def _hollows(draft: SurfacePlanState, space: SurfaceSpace, tool: Tool, progress: Progress) -> float:
+def _hollows(state: SurfacePlanState, space: SurfaceSpace, tool: Tool, progress: Progress) -> float:
     """Return the area in mm2 of curved faces that roughing with a cutter leaves more material over than their cutters are meant for: it
     is too wide for what they lie in."""
-    chosen = draft.chosen
-    tags = {t for o in draft.operations if o.kind in ON_SKIN for t in o.faces}
-    places = places_on(space.skin, tuple(sorted(tags)))
-    places = places.of(places.normal[:, 2] > 0.0)
-    radius = tool.radius + left_on_walls(space, chosen.rough_allowance, chosen.cell)
-    depths = hollow_depths(space, places.point, radius, progress)
-    return places.area * float((depths > FULL * _left_by_layers(space, chosen)).sum())
+    settings = state.settings
+    tags = {t for o in state.operations if o.kind in ON_SKIN for t in o.faces}
+    samples = samples_on(space.skin, tuple(sorted(tags)))
+    samples = samples.of(samples.normal[:, 2] > 0.0)
+    radius = tool.radius + remaining_on_walls(space, settings.rough_allowance, settings.cell)
+    depths = hollow_depths(space, samples.point, radius, progress)
+    return samples.area * float((depths > FULL * _remaining_after_layers(space, settings)).sum())
 
 
-def _left_by_layers(space: SurfaceSpace, chosen: SurfaceRouteSettings) -> float:
+def _remaining_after_layers(space: SurfaceSpace, settings: SurfaceRouteSettings) -> float:
     """Return how thick, in mm and in the mean, roughing by layers leaves material on a slope: what it leaves on walls, and its steps."""
-    return left_on_walls(space, chosen.rough_allowance, chosen.cell) + 0.5 * chosen.layer
+    return remaining_on_walls(space, settings.rough_allowance, settings.cell) + 0.5 * settings.layer
 
 
-def _rougher(draft: SurfacePlanState, most: float, deep: float, name: str) -> Tool | None:
+def _rougher(state: SurfacePlanState, most: float, deep: float, name: str) -> Tool | None:
     """Return the largest roughing cutter up to a diameter that reaches a depth, with the corner that leaves least of a slope."""
     if name:
-        return named(draft.shop, name)
+        return named(state.shop, name)
     fits = [
         t
-        for t in draft.cutters("rough")
+        for t in state.cutters("rough")
         if t.form in ("flat", "bull")
         and t.diameter <= most
-        and depth_reached(t) >= deep + draft.route.reach_clearance
+        and depth_reached(t) >= deep + state.route.reach_clearance
     ]
     return max(
         fits,
@@ -304,7 +306,7 @@ def _rougher(draft: SurfacePlanState, most: float, deep: float, name: str) -> To
 
 
 def _add_rough(
-    draft: SurfacePlanState,
+    state: SurfacePlanState,
     kind: str,
     name: str,
     tool: Tool,
@@ -312,24 +314,24 @@ def _add_rough(
     bottom: float,
     *why: str,
 ) -> None:
-    stage, chosen, cutting = draft.stages[kind], draft.chosen, choose(CuttingSettings, {})
-    depth = min(chosen.layer, roughing_depth(tool, draft.material, cutting))
-    width = roughing_width(tool, draft.material, cutting)
+    stage, settings, cutting = state.stages[kind], state.settings, choose(CuttingSettings, {})
+    depth = min(settings.layer, roughing_depth(tool, state.material, cutting))
+    width = roughing_width(tool, state.material, cutting)
     rules = (
         stage.rule,
         f"{tool.name}: reaches {trimmed(depth_reached(tool), 1)} mm deep.",
         *why,
-        f"It leaves {trimmed(chosen.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.",
+        f"It leaves {trimmed(settings.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.",
     )
     choices: dict[str, Value] = {
-        ALLOWANCE: chosen.rough_allowance,
+        ALLOWANCE: settings.rough_allowance,
         BOTTOM: bottom,
-        CELL: chosen.cell,
+        CELL: settings.cell,
     }
-    draft.add(
+    state.add(
         kind,
         name,
-        draft.first_feature(),
+        state.first_feature(),
         tool,
         (),
         depth,
@@ -341,29 +343,29 @@ def _add_rough(
     )
 
 
-def _outline(draft: SurfacePlanState, tags: tuple[int, ...]) -> None:
+def _outline(state: SurfacePlanState, tags: tuple[int, ...]) -> None:
     """Plan upright walls that stand free, along the part's outline."""
-    stage, space = draft.stages["profile_finish"], draft.space
+    stage, space = state.stages["profile_finish"], state.space
     z = space.skin.points[space.skin.triangles[space.skin.of(tags)], 2]
     top, height = float(z.max()), float(z.max() - z.min())
-    most = WALL_SHARE * draft.route.largest
+    most = WALL_SHARE * state.route.largest
     fits = [
         t
-        for t in draft.cutters("finish")
+        for t in state.cutters("finish")
         if t.form == "flat"
         and t.diameter <= most
-        and depth_reached(t) >= top - float(z.min()) + draft.route.reach_clearance
-        and clear_beside(
+        and depth_reached(t) >= top - float(z.min()) + state.route.reach_clearance
+        and is_clear_of_walls(
             space,
-            places_on(space.skin, tags, FEW),
+            samples_on(space.skin, tags, FEW),
             t,
             float(z.min()),
-            draft.route.reach_clearance,
-            draft.chosen.rough_allowance,
+            state.route.reach_clearance,
+            state.settings.rough_allowance,
         )
     ]
     if not fits:
-        draft.findings.append(
+        state.findings.append(
             error(
                 "route.no-cutter",
                 f"no end mill up to D {trimmed(most, 1)} reaches {trimmed(height, 1)} mm "
@@ -379,109 +381,113 @@ def _outline(draft: SurfacePlanState, tags: tuple[int, ...]) -> None:
         stage.rule,
         f"{tool.name}: the stiffest end mill up to D {trimmed(most, 1)} that reaches {trimmed(height, 1)} mm.",
     )
-    draft.add(
+    state.add(
         "profile_finish",
         face_name(tags),
-        draft.feature_of(tags),
+        state.feature_of(tags),
         tool,
         tags,
         height / steps,
-        left_on_walls(space, draft.chosen.rough_allowance, draft.chosen.cell),
+        remaining_on_walls(space, state.settings.rough_allowance, state.settings.cell),
         {},
         rules,
     )
 
 
-def _area(draft: SurfacePlanState, area: Area, level: FinishedLands, progress: Progress) -> None:
+def _area(state: SurfacePlanState, area: Area, level: FinishedLands, progress: Progress) -> None:
     """Plan semi-finishing and finishing of an area with its own cutter, and of what that cutter leaves with a smaller one.
 
     The feet of sides that end mills finish with lands are no matter of its cutter.
     """
-    chosen = draft.chosen
-    places = places_on(draft.space.skin, area.tags)
-    draft.unsampled.update(set(area.tags) - set(places.face.tolist()))
-    places = level.without_feet(places)
-    area = replace(area, tags=tuple(t for t in area.tags if (places.face == t).any()))
-    wanted = chosen.local_cutter if area.local else chosen.cutter
+    settings = state.settings
+    samples = samples_on(state.space.skin, area.tags)
+    state.unsampled.update(set(area.tags) - set(samples.face.tolist()))
+    samples = level.without_feet(samples)
+    area = replace(area, tags=tuple(t for t in area.tags if (samples.face == t).any()))
+    wanted = settings.local_cutter if area.local else settings.cutter
     found = cutter_for(
-        draft.space,
-        places,
-        _finishers(draft),
-        chosen.share,
-        draft.route.reach_clearance,
-        named(draft.shop, wanted) if wanted else None,
+        state.space,
+        samples,
+        _finishers(state),
+        settings.share,
+        state.route.reach_clearance,
+        named(state.shop, wanted) if wanted else None,
         progress,
     )
-    _tell_unreached(draft, area, places, found)
+    _report_unreached(state, area, samples, found)
     if found.tool is None:
         return
-    tags = tuple(t for t in area.tags if found.reached[places.face == t].any())
-    for kind in ("semi", "finish") if chosen.semi_allowance > 0.0 else ("finish",):
-        for name, mine, strategy in _by_slope(area, tags, places, math.radians(chosen.steep)):
-            _add_finish(draft, kind, name, mine, found.tool, strategy, places)
+    tags = tuple(t for t in area.tags if found.reached[samples.face == t].any())
+    for kind in ("semi", "finish") if settings.semi_allowance > 0.0 else ("finish",):
+        for name, mine, strategy in _by_slope(area, tags, samples, math.radians(settings.steep)):
+            _add_finish(state, kind, name, mine, found.tool, strategy, samples)
     if found.rest is not None:
-        missed = places.of(found.missed)
-        left = Area(
+        missed = samples.of(found.missed)
+        remaining = Area(
             id=area.id, tags=tuple(t for t in area.tags if (missed.face == t).any()), local=True
         )
-        for name, mine, strategy in _by_slope(left, left.tags, missed, math.radians(chosen.steep)):
+        for name, mine, strategy in _by_slope(
+            remaining, remaining.tags, missed, math.radians(settings.steep)
+        ):
             _add_finish(
-                draft, "rest_finish", name, mine, found.rest, strategy, missed, earlier=found.tool
+                state, "rest_finish", name, mine, found.rest, strategy, missed, earlier=found.tool
             )
         # Faces that the larger cutter never touches are still as roughing left them.
-        raw = replace(left, id=f"{area.id}-rest", tags=tuple(t for t in left.tags if t not in tags))
-        if raw.tags and chosen.semi_allowance > 0.0:
+        raw = replace(
+            remaining, id=f"{area.id}-rest", tags=tuple(t for t in remaining.tags if t not in tags)
+        )
+        if raw.tags and settings.semi_allowance > 0.0:
             for name, mine, strategy in _by_slope(
-                raw, raw.tags, missed, math.radians(chosen.steep)
+                raw, raw.tags, missed, math.radians(settings.steep)
             ):
-                _add_finish(draft, "semi", name, mine, found.rest, strategy, missed)
+                _add_finish(state, "semi", name, mine, found.rest, strategy, missed)
 
 
-def _hidden_area(draft: SurfacePlanState, area: Area, progress: Progress) -> None:
+def _hidden_area(state: SurfacePlanState, area: Area, progress: Progress) -> None:
     """Plan semi-finishing and finishing of an area with a leaning cutter."""
-    chosen = draft.chosen
-    places, few = (
-        places_on(draft.space.skin, area.tags),
-        places_on(draft.space.skin, area.tags, LEANING_SAMPLES),
+    settings = state.settings
+    samples, few = (
+        samples_on(state.space.skin, area.tags),
+        samples_on(state.space.skin, area.tags, LEANING_SAMPLES),
     )
-    wanted = chosen.local_cutter if area.local else chosen.cutter
-    own = named(draft.shop, wanted) if wanted else None
+    wanted = settings.local_cutter if area.local else settings.cutter
+    own = named(state.shop, wanted) if wanted else None
     found = leaning_cutter(
-        few, _leaning_finishers(draft), draft.around, chosen.share, own, progress
+        few, _leaning_finishers(state), state.around, settings.share, own, progress
     )
-    _tell_unreached(draft, area, few, found)
+    _report_unreached(state, area, few, found)
     if found.tool is None:
         return
-    if chosen.semi_allowance > 0.0:
-        _add_finish(draft, "semi", area.id, area.tags, found.tool, "surface.point", places)
-    _add_finish(draft, "finish", area.id, area.tags, found.tool, "surface.point", places)
+    if settings.semi_allowance > 0.0:
+        _add_finish(state, "semi", area.id, area.tags, found.tool, "surface.point", samples)
+    _add_finish(state, "finish", area.id, area.tags, found.tool, "surface.point", samples)
     if found.rest is not None:
-        left = tuple(t for t in area.tags if (found.missed & (few.face == t)).any())
+        remaining = tuple(t for t in area.tags if (found.missed & (few.face == t)).any())
         _add_finish(
-            draft,
+            state,
             "rest_finish",
             area.id,
-            left,
+            remaining,
             found.rest,
             "surface.point",
-            places,
+            samples,
             earlier=found.tool,
         )
 
 
 def _by_slope(
-    area: Area, tags: Sequence[int], places: AreaSamples, limit: float
+    area: Area, tags: Sequence[int], samples: AreaSamples, limit: float
 ) -> list[tuple[str, tuple[int, ...], str]]:
     """Return the operations of an area: name, faces, strategy. Local features are of many slopes, which constant scallop suits best.
 
-    Places that lean by more than a limit (rad) are cut by waterlines: a face with some of both is in both operations.
+    Positions that lean by more than a limit (rad) are cut by waterlines: a face with some of both is in both operations.
     """
-    above = leans(places) > limit
-    steep = tuple(t for t in tags if above[places.face == t].mean() > SOME)
+    above = leans(samples) > limit
+    steep = tuple(t for t in tags if above[samples.face == t].mean() > SOME)
     if STEEP not in registry.names("strategies"):
         steep = ()
     shallow = tuple(
-        t for t in tags if t not in steep or above[places.face == t].mean() < 1.0 - SOME
+        t for t in tags if t not in steep or above[samples.face == t].mean() < 1.0 - SOME
     )
     found = (
         [(area.id, shallow, first_known(FOR_LOCAL if area.local else FOR_SHALLOW))]
@@ -497,20 +503,20 @@ FOR_SHALLOW = ("surface.parallel", "surface.constant")
 STEEP = "surface.waterline"
 """The strategy for steep faces."""
 FIRST = "-steep"
-"""Ends the name of an operation on the steep places of an area. It comes before the others there: from the top down it takes off what would
-stand in the way of a neck or shank at a wall's foot."""
+"""Ends the name of an operation on the steep positions of an area. It comes before the others there: from the top down it takes off what
+would stand in the way of a neck or shank at a wall's foot."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
 COARSE, CHORD_SHARE = 0.01, 0.075
-"""mm: from this scallop height on passes need not follow their way as closely as strategies do by themselves; and how closely of it."""
+"""mm: from this scallop height on passes need not follow their path as closely as strategies do by themselves; and how closely of it."""
 SOME = 0.02
 """Share of a face that is worth another strategy."""
-MEETING = {
+SLOPE_LIMITS = {
     "surface.waterline": ("surface.waterline.shallowest", -5.0),
     "surface.constant": ("surface.constant.steepest", 5.0),
     "surface.parallel": ("surface.parallel.steepest", 5.0),
 }
-"""Where strategies for shallow and steep places meet: the setting that says it, and by how many degrees each goes on past the limit."""
+"""Where strategies for shallow and steep positions meet: the setting that says it, and by how many degrees each goes on past the limit."""
 
 
 def first_known(names: Sequence[str]) -> str:
@@ -520,18 +526,18 @@ def first_known(names: Sequence[str]) -> str:
 
 
 def _add_finish(
-    draft: SurfacePlanState,
+    state: SurfacePlanState,
     kind: str,
     name: str,
     tags: tuple[int, ...],
     tool: Tool,
     strategy: str,
-    places: AreaSamples,
+    samples: AreaSamples,
     earlier: Tool | None = None,
 ) -> None:
-    stage, chosen = draft.stages[kind], draft.chosen
+    stage, settings = state.stages[kind], state.settings
     if strategy not in registry.names("strategies"):
-        draft.findings.append(
+        state.findings.append(
             warning(
                 "route.no-strategy",
                 f"{name}: no strategy {strategy} is there; {kind} is left out",
@@ -541,12 +547,14 @@ def _add_finish(
         )
         return
     semi = kind == "semi"
-    allowance = chosen.semi_allowance if semi else 0.0
-    height = chosen.semi_scallop if semi else chosen.height()
-    after_rough = semi or chosen.semi_allowance <= 0.0
-    depth = _left_by_layers(draft.space, chosen) if after_rough else chosen.semi_allowance
+    allowance = settings.semi_allowance if semi else 0.0
+    height = settings.semi_scallop if semi else settings.height()
+    after_rough = semi or settings.semi_allowance <= 0.0
+    depth = (
+        _remaining_after_layers(state.space, settings) if after_rough else settings.semi_allowance
+    )
     width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
-    area = places.area * float(np.isin(places.face, tags).sum())
+    area = samples.area * float(np.isin(samples.face, tags).sum())
     rules = (
         stage.rule,
         f"{tool.name} over {trimmed(area, 0)} mm2: scallops of {trimmed(1000.0 * height, 1)} um, "
@@ -556,15 +564,15 @@ def _add_finish(
     choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
     if height >= COARSE:
         choices[f"{strategy}.chord"] = CHORD_SHARE * height
-    if strategy in MEETING and STEEP in registry.names("strategies"):
-        key, past = MEETING[strategy]
-        choices[key] = min(max(chosen.steep + past, 1.0), 89.0)
+    if strategy in SLOPE_LIMITS and STEEP in registry.names("strategies"):
+        key, past = SLOPE_LIMITS[strategy]
+        choices[key] = min(max(settings.steep + past, 1.0), 89.0)
     if earlier is not None:
         choices |= {EARLIER: earlier.name, f"{strategy}.lead_radius": REST_LEAD}
-    draft.add(
+    state.add(
         kind,
         name,
-        draft.feature_of(tags),
+        state.feature_of(tags),
         tool,
         tags,
         depth,
@@ -575,27 +583,27 @@ def _add_finish(
     )
 
 
-def _finishers(draft: SurfacePlanState) -> tuple[Tool, ...]:
+def _finishers(state: SurfacePlanState) -> tuple[Tool, ...]:
     return tuple(
         t
-        for t in draft.cutters("surface")
-        if t.form == "ball" and t.diameter <= draft.route.largest
+        for t in state.cutters("surface")
+        if t.form == "ball" and t.diameter <= state.route.largest
     )
 
 
-def _tell_unreached(
-    draft: SurfacePlanState, area: Area, places: AreaSamples, found: AreaCutters
+def _report_unreached(
+    state: SurfacePlanState, area: Area, samples: AreaSamples, found: AreaCutters
 ) -> None:
-    """Say which faces no cutter reaches, or not the one that was asked for."""
-    lost = [t for t in area.tags if not found.reachable[places.face == t].any()]
+    """Return which faces no cutter reaches, or not the one that was requested."""
+    lost = [t for t in area.tags if not found.reachable[samples.face == t].any()]
     if lost:
-        size = places.area * float(np.isin(places.face, lost).sum())
+        size = samples.area * float(np.isin(samples.face, lost).sum())
         remedy = (
             "turn the part in another setup"
-            if draft.machine.rotary
+            if state.machine.rotary
             else "machine them on a machine with rotary axes (setup.machine), or turn the part in another setup"
         )
-        draft.findings.append(
+        state.findings.append(
             warning(
                 "route.not-planned",
                 f"{area.id}: no cutter reaches {len(lost)} of its faces, {trimmed(size, 0)} mm2 "
@@ -606,16 +614,16 @@ def _tell_unreached(
         )
 
 
-def _in_order(draft: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation]:
+def _in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation]:
     """Return the operations in the order of the plan's stages, with as few tool changes as that allows."""
     rank = {stage.name: n for n, stage in enumerate(stages)}
     by_stage = {stage.name: stage for stage in stages}
     jobs, done = [], {}
-    for o in draft.operations:
+    for o in state.operations:
         stage = by_stage[o.group]
         before = {
             other.id
-            for other in draft.operations
+            for other in state.operations
             if other.group in stage.after_all
             or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
             or other.id == o.id + FIRST
@@ -631,15 +639,15 @@ def _in_order(draft: SurfacePlanState, stages: Sequence[Stage]) -> list[Operatio
                 id=o.id,
                 tool=o.tool.name,
                 stage=rank[o.group],
-                place=_place(draft, o.faces),
+                position=_position(state, o.faces),
                 after=frozenset(before),
             )
         )
     return [done[id] for id in ordered(jobs)]
 
 
-def _place(draft: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float]:
+def _position(state: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float]:
     if not tags:
         return 0.0, 0.0
-    at = draft.space.frame.to_local(draft.space.part.graph().centre[tags[0] - 1])
+    at = state.space.frame.to_local(state.space.part.graph().centre[tags[0] - 1])
     return float(at[0]), float(at[1])

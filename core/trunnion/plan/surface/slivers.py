@@ -31,25 +31,27 @@ def with_slivers(
     Slivers beside slivers follow one after the other. Neighbours that a cutter follows in any shape come first; an operation on levels
     and walls takes a sliver only from within its faces' heights.
     """
-    made, left = list(operations), sorted(slivers)
+    made, remaining = list(operations), sorted(slivers)
     grown = True
-    while left and grown:
+    while remaining and grown:
         grown = False
-        for tag in list(left):
+        for tag in list(remaining):
             hosts = _hosts(made, tag, graph, skin)
             for n in hosts:
                 made[n] = replace(made[n], faces=(*made[n].faces, tag))
             if hosts:
-                left.remove(tag)
+                remaining.remove(tag)
                 grown = True
-    return made, tuple(left)
+    return made, tuple(remaining)
 
 
 def _hosts(operations: Sequence[Operation], tag: int, graph: FaceGraph, skin: Skin) -> list[int]:
     """Return which operations cut the neighbour of a face that it goes with, none when no neighbour is cut."""
-    beside = sorted(graph.neighbours(tag - 1), key=lambda row: (-_common(graph, tag - 1, row), row))
+    neighbours = sorted(
+        graph.neighbours(tag - 1), key=lambda row: (-_common(graph, tag - 1, row), row)
+    )
     for whole in (True, False):
-        for row in beside:
+        for row in neighbours:
             found = [
                 n
                 for n, o in enumerate(operations)
@@ -68,7 +70,7 @@ def _common(graph: FaceGraph, a: int, b: int) -> float:
 
 
 def _within(skin: Skin, tag: int, faces: Collection[int]) -> bool:
-    """Say whether a face lies within the heights of others."""
+    """Return whether a face lies within the heights of others."""
     mine, theirs = (
         skin.points[skin.triangles[skin.of(tags)], 2] for tags in ((tag,), tuple(faces))
     )

@@ -23,7 +23,7 @@ from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale, WrittenPath, upright, written
 from trunnion.post.words import dialect_words, plain, refuse_unwritable
 from trunnion.post.writer.feed import FeedFormat, dwell_text, revolution_text, surface_text
-from trunnion.shop.kinematics import NO_PLACES, Places
+from trunnion.shop.kinematics import NO_WORK_POSITIONS, WorkPositions
 from trunnion.units import trimmed
 
 
@@ -60,7 +60,7 @@ class AptDialect:
         programs: Sequence[Program],
         header: Header,
         settings: PostSettings,
-        places: Places = NO_PLACES,
+        work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> str:
         """Return the text of all setups' programs."""
         if not programs:
@@ -81,10 +81,10 @@ class AptDialect:
         text: str,
         tools: Sequence[AnyTool],
         setups: Sequence[Setup],
-        places: Places = NO_PLACES,
+        work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> tuple[Program, ...]:
         """Return the programs of the setups that the text names."""
-        from trunnion.post.readers.apt import read_apt
+        from trunnion.post.readers.apt.interpreter import read_apt
 
         return read_apt(text, tools, setups)
 
@@ -112,7 +112,7 @@ def _lines(
         for section in program.sections:
             yield from _section(words, section, scale, section.tool.number != tool, settings.units)
             yield from _motions(
-                _blocks(section, scale, axes, settings.straying),
+                _blocks(section, scale, axes, settings.path_tolerance),
                 scale,
                 axes,
                 _feed_words(words, section, scale, settings.units),
@@ -122,7 +122,7 @@ def _lines(
 
 
 def leaning(path: Toolpath) -> bool:
-    """Say whether the tool leans anywhere on a path."""
+    """Return whether the tool leans anywhere on a path."""
     return not path.work_turns and bool(
         (np.abs(path.axis[:, :2]).max(axis=1, initial=0.0) > tolerance.PARAMETRIC).any()
     )
@@ -188,14 +188,14 @@ def _feed_words(words: AptWords, section: ProgramSection, scale: TickScale, unit
 def _motions(
     path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_text: FeedText
 ) -> Iterator[str]:
-    text, said, start = scale.text, "", [0, 0, 0]
+    text, last_axis_text, start = scale.text, "", [0, 0, 0]
     rows = zip(path.blocks(), path.more.tolist(), path.dwell.tolist(), strict=True)
     for (point, centre, motion, feed), axis, dwell in rows:
         if motion == Motion.RAPID:
             yield "RAPID"
-        elif (now := feed_text(feed, point[0])) != said:
-            said = now
-            yield said
+        elif (now := feed_text(feed, point[0])) != last_axis_text:
+            last_axis_text = now
+            yield last_axis_text
         if motion >= Motion.ARC_CW:
             radius = int(round(((start[0] - centre[0]) ** 2 + (start[1] - centre[1]) ** 2) ** 0.5))
             sense = 1 if motion == Motion.ARC_CCW else -1

@@ -17,14 +17,16 @@ def read_iso(
     text: str,
     tools: Sequence[AnyTool],
     setup: Setup,
-    place: WorkPosition | None,
+    work_position: WorkPosition | None,
     words: IsoWords,
     control: type[Control] = Control,
 ) -> Program:
     """Return the motions of one setup's text, with the line of each block; raise `BadInput` naming the line of what isn't understood.
 
-    `tools` are found by their T number; operations by our comments, else they are called `line N`. `place` says where the work stands on a
-    machine with rotary axes.
+    `tools` are found by their T number; operations by our comments, else they are called `line N`. `work_position` says where the work
+    stands on a machine with rotary axes.
     """
-    on_rotary = place if place is not None and place.machine.rotary else None
+    on_rotary = (
+        work_position if work_position is not None and work_position.machine.rotary else None
+    )
     return control(words, by_number(tools), setup, on_rotary).read(text)

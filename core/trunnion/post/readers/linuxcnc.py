@@ -15,10 +15,10 @@ from trunnion.shop.kinematics import WorkPosition
 
 
 def read_linuxcnc(
-    text: str, tools: Sequence[AnyTool], setup: Setup, place: WorkPosition | None = None
+    text: str, tools: Sequence[AnyTool], setup: Setup, work_position: WorkPosition | None = None
 ) -> Program:
     """Return the motions of one setup's text; see `read_iso`."""
-    return read_iso(text, tools, setup, place, iso_words("linuxcnc"), LinuxCncControl)
+    return read_iso(text, tools, setup, work_position, iso_words("linuxcnc"), LinuxCncControl)
 
 
 class LinuxCncControl(Control):

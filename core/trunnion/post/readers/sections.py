@@ -165,8 +165,8 @@ class _Open:
     idle: CuttingState = _IDLE
     dwell: float = 0.0
 
-    def closed(self, reckoning: PoseInterpreter) -> ProgramSection:
-        path, lines = reckoning.opened(self.rows)
+    def closed(self, interpreter: PoseInterpreter) -> ProgramSection:
+        path, lines = interpreter.opened(self.rows)
         spindle, coolant, surface_speed = self.cutting or self.idle
         return ProgramSection(
             operation=self.operation,
@@ -189,8 +189,8 @@ class Sections:
     judged from where it really starts; after a tool change the tool comes from above, at the clearance height or higher.
     """
 
-    def __init__(self, reckoning: PoseInterpreter) -> None:
-        self.reckoning = reckoning
+    def __init__(self, interpreter: PoseInterpreter) -> None:
+        self.interpreter = interpreter
         self.at: Point | None = None
         self._done: list[ProgramSection] = []
         self._open: _Open | None = None
@@ -213,7 +213,7 @@ class Sections:
     def lift(self, line: int, tool: AnyTool, state: CuttingState) -> None:
         """Take the tool straight up out of sight (G53 G0 Z0)."""
         if self.at is not None:
-            if (up := self.reckoning.above(self.at, tool)) is not None:
+            if (up := self.interpreter.above(self.at, tool)) is not None:
                 self.rapid(line, up, tool, state)
             self.at = None
 
@@ -221,11 +221,11 @@ class Sections:
         """Add a rapid to a point; `state` is spindle and coolant, for a section that cuts nothing."""
         if self._open is None:
             self._begin(line, tool)
-            start = self.reckoning.above(point, tool) if self.at is None else self.at
+            start = self.interpreter.above(point, tool) if self.at is None else self.at
             if start is not None and (
                 self.at is None
                 or start[3:] != point[3:]
-                or self.reckoning.above(start, tool) is not None
+                or self.interpreter.above(start, tool) is not None
             ):
                 self._add(line, Motion.RAPID, start, NOWHERE, 0.0)
         self._add(line, Motion.RAPID, point, NOWHERE, 0.0)
@@ -308,5 +308,5 @@ class Sections:
 
     def _close(self) -> None:
         if self._open is not None:
-            self._done.append(self._open.closed(self.reckoning))
+            self._done.append(self._open.closed(self.interpreter))
             self._open = None

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from trunnion.findings import BadInput
 from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
-from trunnion.post.header import place_lines, tool_line
+from trunnion.post.header import tool_line, work_position_lines
 from trunnion.post.readers.numbers import shown
 from trunnion.post.words import plain
 from trunnion.shop.kinematics import WorkPosition
@@ -42,14 +42,17 @@ def check_tool(line: int, comment: str, tools: Mapping[int, AnyTool]) -> None:
         )
 
 
-def check_work_position(line: int, comment: str, setup: Setup, place: WorkPosition | None) -> None:
+def check_work_position(
+    line: int, comment: str, setup: Setup, work_position: WorkPosition | None
+) -> None:
     """Raise `BadInput` when a comment is our header's line of where the work stands and it stands elsewhere now."""
-    if place is None:
+    if work_position is None:
         raise BadInput(
             f"line {line}: the text was made for a machine with rotary axes, {setup.machine} has none; post the program anew"
         )
     if comment not in [
-        plain(place_lines(setup, place, units)[0], len(comment)) for units in ("mm", "inch")
+        plain(work_position_lines(setup, work_position, units)[0], len(comment))
+        for units in ("mm", "inch")
     ]:
         raise BadInput(
             f"line {line}: the text was made for work that stands elsewhere on its machine; post the program anew"

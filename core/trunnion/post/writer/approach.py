@@ -32,9 +32,9 @@ def approach(
 ) -> Iterator[str]:
     """Yield the lines of the first rapid, to a point and angles in ticks; `changed` after a tool change."""
     words, rapid = modal.words, modal.words.motions[Motion.RAPID]
-    said = modal.plane.words(point, modal.scale.text)
-    across = " ".join(w for w in said if not w.startswith("Z"))
-    down = next(w for w in said if w.startswith("Z"))
+    plane_words = modal.plane.words(point, modal.scale.text)
+    across = " ".join(w for w in plane_words if not w.startswith("Z"))
+    down = next(w for w in plane_words if w.startswith("Z"))
     turn = "".join(
         f" {letter}{modal.degrees.text(v)}" for letter, v in zip(modal.letters, angle, strict=True)
     )

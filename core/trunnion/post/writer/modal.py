@@ -19,7 +19,8 @@ Block = tuple[list[int], list[int], int, float]
 class WrittenState:
     """What the control knows at this line of the text. Positions, centres and angles are in ticks of their last decimal.
 
-    `at` is the tip's place, None when it is not known; `angle` that of the rotary axes whose letters are `letters`, None before the first;
+    `at` is the tip's position, None when it is not known; `angle` that of the rotary axes whose letters are `letters`, None before the
+    first;
     `motion` -1 before the first; `feed` is as it was written, empty when it must be written again, and `feed_mode` what it is given by.
     `feeds` is how the section's feeds are written, `plane` which letters its points have.
     """
@@ -68,9 +69,9 @@ class WrittenState:
             parts += [plane.centres[0] + text(i), plane.centres[1] + text(j)]
         if minutes > 0.0:
             parts.append("F" + inverse_time(minutes))
-        elif fed and (said := self.feed_text(feed, point[plane.radial])) != self.feed:
-            parts.append("F" + said)
-            self.feed = said
+        elif fed and (feed_words := self.feed_text(feed, point[plane.radial])) != self.feed:
+            parts.append("F" + feed_words)
+            self.feed = feed_words
         self.at, self.angle, self.motion = (point[0], point[1], point[2]), angle, motion
         return " ".join(parts)
 

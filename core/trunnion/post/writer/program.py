@@ -8,7 +8,7 @@ from dataclasses import replace
 from trunnion.findings import Refused
 from trunnion.model.motion.program import Program, ProgramSection
 from trunnion.model.spindle import FeedMode
-from trunnion.post.header import Header, place_lines
+from trunnion.post.header import Header, work_position_lines
 from trunnion.post.iso_words import IsoWords, code_of
 from trunnion.post.linearize import PathTolerance
 from trunnion.post.settings import PostSettings
@@ -32,14 +32,20 @@ def comment(words: IsoWords, text: str) -> str:
 
 
 class ProgramWriter:
-    """Writes one setup's program line by line. `place` says where the work stands on a machine with rotary axes."""
+    """Writes one setup's program line by line. `work_position` says where the work stands on a machine with rotary axes."""
 
     def __init__(
-        self, words: IsoWords, program: Program, settings: PostSettings, place: WorkPosition | None
+        self,
+        words: IsoWords,
+        program: Program,
+        settings: PostSettings,
+        work_position: WorkPosition | None,
     ) -> None:
         self.words, self.program, self.settings = words, program, settings
-        self.place = place if place is not None and place.machine.rotary else None
-        self.axes = _axis_form(words, settings, self.place)
+        self.work_position = (
+            work_position if work_position is not None and work_position.machine.rotary else None
+        )
+        self.axes = _axis_form(words, settings, self.work_position)
         self.modal = WrittenState(words, settings, self.axes.letters)
         self.number = 0
         self.turns = any(s.path.work_turns for s in program.sections)
@@ -76,8 +82,10 @@ class ProgramWriter:
         yield from header.about([self.program], self.settings.units)
         if self.turns:
             yield "X IS A DIAMETER WHILE THE WORK TURNS"
-        if self.place is not None:
-            yield from place_lines(self.program.setup, self.place, self.settings.units)
+        if self.work_position is not None:
+            yield from work_position_lines(
+                self.program.setup, self.work_position, self.settings.units
+            )
 
     def numbered(self, line: str) -> str:
         """Return a line with the next number."""
@@ -112,10 +120,10 @@ class ProgramWriter:
         self.modal.plane = TURNING if section.path.work_turns else MILLING
         if not self.turns:
             return
-        if not self.words.turning or self.place is not None:
+        if not self.words.turning or self.work_position is not None:
             raise Refused(
                 f"operation {section.operation}: {self.words.title} has no words for work that turns"
-                + (" on a machine with rotary axes" if self.place is not None else "")
+                + (" on a machine with rotary axes" if self.work_position is not None else "")
             )
         yield self.words.turning if section.path.work_turns else self.words.milling
 
@@ -176,13 +184,20 @@ class ProgramWriter:
         yield f"{code} {letter}{dwell_text(seconds)}"
 
 
-def _axis_form(words: IsoWords, settings: PostSettings, place: WorkPosition | None) -> AxisForm:
+def _axis_form(
+    words: IsoWords, settings: PostSettings, work_position: WorkPosition | None
+) -> AxisForm:
     scale = TickScale.of(settings, words.extra_decimals_inch, words.feed_decimals)
-    if place is None:
+    if work_position is None:
         return ThreeAxes(scale=scale)
     if not words.inverse_time:
         raise Refused(
-            f"{words.title} has no words for the rotary axes of {place.machine.title}; choose another control or machine"
+            f"{words.title} has no words for the rotary axes of {work_position.machine.title}; choose another control or machine"
         )
-    straying = PathTolerance(feed=settings.straying, rapid=settings.rapid_straying)
-    return JointForm(place=place, scale=scale, degrees=degrees_of(words), straying=straying)
+    path_tolerance = PathTolerance(feed=settings.straying, rapid=settings.rapid_straying)
+    return JointForm(
+        work_position=work_position,
+        scale=scale,
+        degrees=degrees_of(words),
+        path_tolerance=path_tolerance,
+    )

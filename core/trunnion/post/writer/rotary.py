@@ -64,25 +64,30 @@ class ThreeAxes:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointForm:
-    """Positions of the axes of a machine on which the work stands at `place`; lengths in `scale`, angles in `degrees`."""
+    """Positions of the axes of a machine on which the work stands at `work_position`; lengths in `scale`, angles in `degrees`."""
 
-    place: WorkPosition
+    work_position: WorkPosition
     scale: TickScale
     degrees: TickScale
-    straying: PathTolerance
+    path_tolerance: PathTolerance
 
     @property
     def letters(self) -> str:
         """The letters of the rotary axes, in the machine's order."""
-        return self.place.names
+        return self.work_position.names
 
     def blocks(
         self, section: ProgramSection, angle: list[int] | None, goes_on: bool
     ) -> tuple[WrittenPath, Floats]:
         """See `AxisForm`."""
-        stand = None if angle is None else self.radians(np.array(angle))
+        start_angle = None if angle is None else self.radians(np.array(angle))
         joints = joint_path(
-            section.path, section.cutter, self.place, stand, self.straying, section.operation
+            section.path,
+            section.cutter,
+            self.work_position,
+            start_angle,
+            self.path_tolerance,
+            section.operation,
         )
         moved = Toolpath(
             position=joints.words,
@@ -105,7 +110,7 @@ class JointForm:
         self, before: list[int] | None, after: Ints, operation: str
     ) -> None:
         """Refuse an operation that begins in another direction than the tool has: only its own path knows a safe way there."""
-        old, new = axes_of(self.place, self.radians(np.array([before, after])))
+        old, new = axes_of(self.work_position, self.radians(np.array([before, after])))
         if np.linalg.norm(new - old) > _SAME_DIRECTION:
             raise Refused(
                 f"operation {operation} begins with the tool in another direction than the one before it ends with: "
@@ -119,8 +124,10 @@ class JointForm:
         words = np.asarray(
             path.point * (self.scale.unit / 10.0**self.scale.decimals), dtype=np.float64
         )
-        tip, _ = poses_of(self.place, words, angle, tool.gauge_length)
-        rates = np.array([self.place.machine.axis(name).rapid for name in (*"XYZ", *self.letters)])
+        tip, _ = poses_of(self.work_position, words, angle, tool.gauge_length)
+        rates = np.array(
+            [self.work_position.machine.axis(name).rapid for name in (*"XYZ", *self.letters)]
+        )
         axes = np.abs(np.diff(np.column_stack([words, np.degrees(angle)]), axis=0)) / rates
         time = np.maximum(
             np.linalg.norm(np.diff(tip, axis=0), axis=1) / np.maximum(path.feed[1:], _SLOWEST),

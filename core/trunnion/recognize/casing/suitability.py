@@ -79,16 +79,16 @@ def _thickness(graph: FaceGraph) -> float:
 def _on_wall(graph: FaceGraph, turned: Bools) -> Bools:
     """Return which faces (n,) are parts of bosses, holes and pockets: not of revolution, and little of them hangs together."""
     found = np.zeros(len(graph), dtype=bool)
-    left, whole = (
+    remaining, whole = (
         {int(r) for r in np.flatnonzero(~turned & (graph.area > 0.0))},
         float(graph.area.sum()),
     )
-    while left:
-        border, mine = [left.pop()], []
+    while remaining:
+        border, mine = [remaining.pop()], []
         while border:
             mine.append(border.pop())
-            beside = left.intersection(graph.neighbours(mine[-1]))
-            left -= beside
-            border += beside
+            adjacent = remaining.intersection(graph.neighbours(mine[-1]))
+            remaining -= adjacent
+            border += adjacent
         found[mine] = float(graph.area[mine].sum()) <= ON_WALL * whole
     return found

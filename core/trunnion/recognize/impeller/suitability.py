@@ -65,9 +65,9 @@ class ImpellerKind:
         )
 
 
-def _within(graph: FaceGraph, chosen: Sequence[CircularPattern]) -> Bools:
+def _within(graph: FaceGraph, patterns: Sequence[CircularPattern]) -> Bools:
     found = np.zeros(len(graph), dtype=bool)
-    for pattern in chosen:
+    for pattern in patterns:
         found[pattern.rows] = True
     return found
 

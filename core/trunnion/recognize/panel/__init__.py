@@ -10,7 +10,7 @@ from trunnion.findings import BadInput, Finding
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Slicer, Smallest, Suitability
 from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
@@ -82,7 +82,11 @@ class PanelFamily:
         )
 
     def recognize(
-        self, graph: FaceGraph, slicer: Slicer, settings: PanelSettings, progress: Progress = QUIET
+        self,
+        graph: FaceGraph,
+        slicer: Slicer,
+        settings: PanelSettings,
+        progress: Progress = NO_PROGRESS,
     ) -> Recognition:
         """Return the features of a panel. Raises `BadInput` when the part has no plane face, `Cancelled` when asked to stop."""
         progress.at(0.0, "choosing the frame")
@@ -105,7 +109,7 @@ class PanelFamily:
         features.extend(around.features)
         findings.extend(around.findings)
         explained = {tag - 1 for f in features for tag in f.tags}
-        left = tuple(
+        remaining = tuple(
             r
             for r, k in enumerate(above.classes.kind)
             if r not in explained and k is not FaceClass.ABSENT
@@ -113,15 +117,18 @@ class PanelFamily:
         findings.extend(above.slices.findings)
         findings.extend(
             rest_findings(
-                above.graph, above.classes, left, {f for seen in shown for f in seen.tops.undercut}
+                above.graph,
+                above.classes,
+                remaining,
+                {f for seen in shown for f in seen.tops.undercut},
             )
         )
         return Recognition(
             family=self.name,
             frame=frame,
             features=tuple(features),
-            unexplained=tuple(r + 1 for r in left),
-            unexplained_share=float(graph.area[list(left)].sum() / graph.area.sum()),
+            unexplained=tuple(r + 1 for r in remaining),
+            unexplained_share=float(graph.area[list(remaining)].sum() / graph.area.sum()),
             findings=tuple(findings),
         )
 

@@ -18,7 +18,7 @@ from trunnion.recognize.panel.sizes import (
     island_sizes,
     pocket_sizes,
     rib_sizes,
-    tidy,
+    rounded,
 )
 from trunnion.recognize.panel.slicing.confirm import (
     LEANING_REMEDY,
@@ -104,7 +104,7 @@ def make_profile(view: PanelSide, taken: set[int], id: str) -> SideFeatures:
         return SideFeatures(features=(), findings=())
     round_ = [f for f in faces if is_rounding(view.graph, view.classes, f)]
     roles = tuple(FaceRole(role="corner" if f in round_ else "wall", face=f + 1) for f in faces)
-    sizes: dict[str, Size] = {"height": tidy(view.height)}
+    sizes: dict[str, Size] = {"height": rounded(view.height)}
     radius = corner_radius(view, round_) if round_ else None
     if radius is not None:
         sizes["corner_radius"] = radius
@@ -145,7 +145,7 @@ def make_datum(top: Sequence[int], bottom: Sequence[int], height: float, id: str
         *(FaceRole(role="bottom", face=f + 1) for f in bottom),
     )
     return (
-        Feature(id=id, kind="datum", faces=roles, sizes={"top_z": tidy(height), "bottom_z": 0.0})
+        Feature(id=id, kind="datum", faces=roles, sizes={"top_z": rounded(height), "bottom_z": 0.0})
         if roles
         else None
     )
@@ -163,7 +163,7 @@ def _pocket(
     sizes = pocket_sizes(view, pocket, ribs)
     x, y = middle(pocket.floors or pocket.sides)
     attributes: dict[str, Size] = {
-        "centre": (tidy(x), tidy(y), float(sizes["floor_z"])),  # type: ignore[arg-type]
+        "centre": (rounded(x), rounded(y), float(sizes["floor_z"])),  # type: ignore[arg-type]
         "identification": kind,
     }
     if not pocket.floors:
@@ -217,12 +217,12 @@ def _island(view: PanelSide, id: str, island: Island, inside: str) -> Feature:
 
 
 def _rib(view: PanelSide, id: str, top: int, pockets: Sequence[Pocket]) -> Feature:
-    beside = {
+    adjacent = {
         view.graph.across(e, top)
         for e in view.graph.edges_of[top]
         if view.graph.convexity[e] == CONVEX
     }
-    floors = [f for p in pockets if beside.intersection(p.sides) for f in p.floors]
+    floors = [f for p in pockets if adjacent.intersection(p.sides) for f in p.floors]
     attributes: dict[str, Size] = {"direction": (0.0, 0.0, -1.0)} if view.below else {}
     return Feature(
         id=id,

@@ -96,11 +96,11 @@ def _height_axis(graph: FaceGraph) -> Floats:
             families.append([r])
         else:
             near.append(r)
-    ways = [graph.normal[f[0]] for f in families]
+    directions = [graph.normal[f[0]] for f in families]
     shares = [np.array([foot_share(graph, r) for r in f]) for f in families]
     alike = [
-        [k, *(n for n, other in enumerate(ways) if other @ way < -np.cos(ANGLE))]
-        for k, way in enumerate(ways)
+        [k, *(n for n, other in enumerate(directions) if other @ direction < -np.cos(ANGLE))]
+        for k, direction in enumerate(directions)
     ]
     bound = [
         sum(float(graph.area[families[n]] @ shares[n]) for n in same)
@@ -110,7 +110,7 @@ def _height_axis(graph: FaceGraph) -> Floats:
     # What is hidden only takes away: once a family's bound is below the best score, neither it nor any after it can win.
     seen: dict[int, Floats] = {}
     both: dict[int, float] = {}
-    for k in sorted(range(len(ways)), key=lambda k: -bound[k]):
+    for k in sorted(range(len(directions)), key=lambda k: -bound[k]):
         if both and bound[k] < max(both.values()) * (1.0 - BALANCE):
             break
         for n in alike[k]:
@@ -119,19 +119,22 @@ def _height_axis(graph: FaceGraph) -> Floats:
         both[k] = sum(float(seen[n] @ shares[n]) for n in alike[k]) * sum(
             float(seen[n].sum()) for n in alike[k]
         )
-    left = sorted(both)
-    plan = {k: sum(float(seen[n].sum()) for n in alike[k]) for k in left}
-    floors = {k: float(seen[k] @ shares[k]) for k in left}
+    remaining = sorted(both)
+    plan = {k: sum(float(seen[n].sum()) for n in alike[k]) for k in remaining}
+    floors = {k: float(seen[k] @ shares[k]) for k in remaining}
     for scores in (both, plan, floors):
-        most = max(scores[k] for k in left)
-        left = [k for k in left if scores[k] >= most * (1.0 - BALANCE)]
-    return max((ways[k] for k in left), key=lambda way: tuple(way[::-1].round(DECIMALS)))
+        most = max(scores[k] for k in remaining)
+        remaining = [k for k in remaining if scores[k] >= most * (1.0 - BALANCE)]
+    return max(
+        (directions[k] for k in remaining),
+        key=lambda direction: tuple(direction[::-1].round(DECIMALS)),
+    )
 
 
 def _seen_area(graph: FaceGraph, faces: list[int]) -> Floats:
     """Return the area of each of some parallel faces that is seen from outside: nothing that looks back stands before it."""
-    way = graph.normal[faces[0]]
-    local = graph.in_frame(Frame(np.zeros(3), _any_across(graph, way), way))
+    direction = graph.normal[faces[0]]
+    local = graph.in_frame(Frame(np.zeros(3), _any_across(graph, direction), direction))
     back = np.flatnonzero((local.normal[:, 2] < -BACK) & (graph.area > 0.0))
     seen = []
     for r in faces:
@@ -196,12 +199,14 @@ def _long_axis(graph: FaceGraph, angle: float, world: Callable[[Floats], Floats]
     a direction into the file's).
     """
     points = outline_points(graph)
-    ways = [
+    directions = [
         np.array([np.cos(angle + q * np.pi / 2), np.sin(angle + q * np.pi / 2), 0.0])
         for q in range(4)
     ]
-    spans = [float(np.ptp(points @ w[:2])) for w in ways]
-    long = [w for w, span in zip(ways, spans, strict=True) if span > max(spans) * (1.0 - BALANCE)]
+    spans = [float(np.ptp(points @ w[:2])) for w in directions]
+    long = [
+        w for w, span in zip(directions, spans, strict=True) if span > max(spans) * (1.0 - BALANCE)
+    ]
     for measure in (_balance, _skewness):
         for across in (False, True):
             scores = [
@@ -211,15 +216,15 @@ def _long_axis(graph: FaceGraph, angle: float, world: Callable[[Floats], Floats]
     return max(long, key=lambda w: tuple(world(w).round(DECIMALS)))
 
 
-def _along(graph: FaceGraph, points: Floats, way: Floats) -> Floats:
+def _along(graph: FaceGraph, points: Floats, direction: Floats) -> Floats:
     """Return where the middles of the edges lie along a direction, from -1 to 1 over the part."""
-    extent = points @ way[:2]
-    return (graph.middle @ way - 0.5 * (extent.max() + extent.min())) / (0.5 * np.ptp(extent))
+    extent = points @ direction[:2]
+    return (graph.middle @ direction - 0.5 * (extent.max() + extent.min())) / (0.5 * np.ptp(extent))
 
 
-def _balance(graph: FaceGraph, points: Floats, way: Floats) -> float:
-    return float(graph.length @ _along(graph, points, way) / graph.length.sum())
+def _balance(graph: FaceGraph, points: Floats, direction: Floats) -> float:
+    return float(graph.length @ _along(graph, points, direction) / graph.length.sum())
 
 
-def _skewness(graph: FaceGraph, points: Floats, way: Floats) -> float:
-    return float(graph.length @ _along(graph, points, way) ** 3 / graph.length.sum())
+def _skewness(graph: FaceGraph, points: Floats, direction: Floats) -> float:
+    return float(graph.length @ _along(graph, points, direction) ** 3 / graph.length.sum())

@@ -18,11 +18,11 @@ def generalized_pocket(feature: Feature, found: Recognition) -> GeneralizedPocke
     inside = tuple(
         f for f in found if feature.id in (f.attributes.get("in"), f.attributes.get("nested_in"))
     )
-    says = feature.attributes
+    attributes = feature.attributes
     return GeneralizedPocket(
-        identification=str(says.get("identification", feature.kind.replace("_", " "))),
-        through=bool(says.get("through", not feature.with_role("floor"))),
-        centre=_centre(says.get("centre")),
+        identification=str(attributes.get("identification", feature.kind.replace("_", " "))),
+        through=bool(attributes.get("through", not feature.with_role("floor"))),
+        centre=_centre(attributes.get("centre")),
         top=_height(feature, "top_z"),
         bottom=_height(feature, "floor_z"),
         guide=tuple(f for f in feature.faces if f.role in GUIDES),

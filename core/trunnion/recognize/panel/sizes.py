@@ -23,7 +23,7 @@ LEAN_STEP = 0.05
 """degrees: leans closer than this are one lean."""
 
 
-def tidy(value: float) -> float:
+def rounded(value: float) -> float:
     """Return a size without the noise of the file's numbers, and without a negative zero.
 
     >>> tidy(19.99999999), tidy(-1e-12)
@@ -34,7 +34,7 @@ def tidy(value: float) -> float:
 
 def main_z(view: PanelSide, z: float) -> float:
     """Return a height of a view in the recognition's frame."""
-    return tidy(view.height - z if view.below else z)
+    return rounded(view.height - z if view.below else z)
 
 
 def pocket_sizes(view: PanelSide, pocket: Pocket, ribs: Iterable[int]) -> dict[str, Size]:
@@ -43,7 +43,7 @@ def pocket_sizes(view: PanelSide, pocket: Pocket, ribs: Iterable[int]) -> dict[s
     top = max(float(graph.box_high[f][2]) for f in pocket.sides or pocket.floors)
     deep = min(view.z(f) for f in pocket.floors or pocket.sides)
     sizes: dict[str, Size] = {
-        "depth": tidy(top - deep),
+        "depth": rounded(top - deep),
         "floor_z": main_z(view, deep),
         "top_z": main_z(view, top),
     }
@@ -66,7 +66,7 @@ def island_sizes(view: PanelSide, island: Island) -> dict[str, Size]:
     )
     sizes: dict[str, Size] = {
         "top_z": main_z(view, top),
-        "height": tidy(top - view.z(island.floor)),
+        "height": rounded(top - view.z(island.floor)),
     }
     sizes.update(side_sizes(view, island.walls, island.corners))
     sizes["floor_fillet"] = fillet_radius(view, island.fillets, not island.fillets)
@@ -76,12 +76,12 @@ def island_sizes(view: PanelSide, island: Island) -> dict[str, Size]:
 def rib_sizes(view: PanelSide, top: int, floors: Iterable[int]) -> dict[str, Size]:
     """Return the sizes of a rib: thickness at its top, length along its middle line, heights over the floors beside it."""
     z = view.z(top)
-    sizes: dict[str, Size] = {"top_z": main_z(view, z), "below_top": tidy(view.height - z)}
+    sizes: dict[str, Size] = {"top_z": main_z(view, z), "below_top": rounded(view.height - z)}
     thickness, length = strip(view, top)
-    beside = [view.z(f) for f in floors]
-    sizes["thickness"] = tidy(thickness)
-    if beside:
-        sizes.update(height=tidy(z - min(beside)), lower_height=tidy(z - max(beside)))
+    adjacent = [view.z(f) for f in floors]
+    sizes["thickness"] = rounded(thickness)
+    if adjacent:
+        sizes.update(height=rounded(z - min(adjacent)), lower_height=rounded(z - max(adjacent)))
     sizes["length"] = round(length, 3)
     if len(_ends(view, top)) > 2:
         sizes["compound"] = True
@@ -115,12 +115,14 @@ def corner_radius(view: PanelSide, sides: Sequence[int]) -> float | None:
         bend_radius(graph, s) for s in sides if graph.bend[s] < 0 and graph.surface[s] != "plane"
     ]
     blends = hollow or [bend_radius(graph, s) for s in sides if s in view.corners]
-    return tidy(min(blends)) if blends else None
+    return rounded(min(blends)) if blends else None
 
 
 def fillet_radius(view: PanelSide, fillets: Sequence[int], sharp: bool) -> float:
     """Return the smallest radius at the foot of walls, 0 when one of them stands sharply on the floor."""
-    return 0.0 if sharp or not fillets else tidy(min(bend_radius(view.graph, f) for f in fillets))
+    return (
+        0.0 if sharp or not fillets else rounded(min(bend_radius(view.graph, f) for f in fillets))
+    )
 
 
 def strip(view: PanelSide, face: int) -> tuple[float, float]:
@@ -134,37 +136,39 @@ def strip(view: PanelSide, face: int) -> tuple[float, float]:
     ]
     best: tuple[float, float, Floats, Floats] | None = None
     for i, a in enumerate(sides):
-        way = graph.end[a] - graph.start[a]
-        way = way / np.linalg.norm(way)
+        direction = graph.end[a] - graph.start[a]
+        direction = direction / np.linalg.norm(direction)
         for b in sides[i + 1 :]:
             other = (graph.end[b] - graph.start[b]) / np.linalg.norm(graph.end[b] - graph.start[b])
             gap = (graph.middle[b] - graph.middle[a]) - (
-                (graph.middle[b] - graph.middle[a]) @ way
-            ) * way
+                (graph.middle[b] - graph.middle[a]) @ direction
+            ) * direction
             width = float(np.linalg.norm(gap))
-            spans = [np.sort([p[e] @ way for p in (graph.start, graph.end)]) for e in (a, b)]
-            beside = float(min(s[1] for s in spans) - max(s[0] for s in spans))
+            spans = [np.sort([p[e] @ direction for p in (graph.start, graph.end)]) for e in (a, b)]
+            adjacent = float(min(s[1] for s in spans) - max(s[0] for s in spans))
             parallel = (
-                np.linalg.norm(np.cross(way, other)) < ANGLE and width > SLIVER and beside > width
+                np.linalg.norm(np.cross(direction, other)) < ANGLE
+                and width > SLIVER
+                and adjacent > width
             )
             if parallel and (
-                best is None or (round(beside, 3), -width) > (round(best[1], 3), -best[0])
+                best is None or (round(adjacent, 3), -width) > (round(best[1], 3), -best[0])
             ):
-                best = (width, beside, way, graph.middle[a] + 0.5 * gap)
+                best = (width, adjacent, direction, graph.middle[a] + 0.5 * gap)
     if best is None:
         width = mean_width(view, face)
         return width, float(graph.area[face] / width)
-    width, _, way, middle = best
+    width, _, direction, middle = best
     reach = [
-        _crossing(graph.start[e], graph.end[e], middle, way)
+        _crossing(graph.start[e], graph.end[e], middle, direction)
         for end in _ends(view, face)
         for e in end
-        if np.linalg.norm(np.cross(graph.end[e] - graph.start[e], way)) > SLIVER
+        if np.linalg.norm(np.cross(graph.end[e] - graph.start[e], direction)) > SLIVER
     ]
     across = [t for t in reach if t is not None]
     if len(across) < 2:
         along = [
-            float((p[e] - middle) @ way)
+            float((p[e] - middle) @ direction)
             for e in graph.edges_of[face]
             for p in (graph.start, graph.end)
         ]
@@ -172,11 +176,15 @@ def strip(view: PanelSide, face: int) -> tuple[float, float]:
     return width, max(across) - min(across)
 
 
-def _crossing(start: Floats, end: Floats, point: Floats, way: Floats) -> float | None:
+def _crossing(start: Floats, end: Floats, point: Floats, direction: Floats) -> float | None:
     """Return where a line through a point meets the line of an edge, seen along z; None when it passes the edge by."""
-    edge, normal = end - start, np.array([-way[1], way[0], 0.0])
+    edge, normal = end - start, np.array([-direction[1], direction[0], 0.0])
     share = float((point - start) @ normal / (edge @ normal))
-    return float((start + share * edge - point) @ way) if -SLIVER < share < 1.0 + SLIVER else None
+    return (
+        float((start + share * edge - point) @ direction)
+        if -SLIVER < share < 1.0 + SLIVER
+        else None
+    )
 
 
 def _ends(view: PanelSide, face: int) -> list[list[int]]:
@@ -185,13 +193,13 @@ def _ends(view: PanelSide, face: int) -> list[list[int]]:
     feet = [e for e in graph.edges_of[face] if graph.convexity[e] == CONCAVE]
     groups: list[list[int]] = []
     for e in feet:
-        touching = [g for g in groups if any(_touch(view, e, f) for f in g)]
+        touching = [g for g in groups if any(_overlap(view, e, f) for f in g)]
         merged = [e, *(f for g in touching for f in g)]
         groups = [g for g in groups if g not in touching] + [merged]
     return groups
 
 
-def _touch(view: PanelSide, a: int, b: int) -> bool:
+def _overlap(view: PanelSide, a: int, b: int) -> bool:
     graph = view.graph
     return any(
         np.linalg.norm(p - q) < SLIVER

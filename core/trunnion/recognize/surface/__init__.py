@@ -10,7 +10,7 @@ from trunnion.findings import BadInput, Finding, face_tags, info
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Recognition
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Bounded, Suitability
 from trunnion.recognize.surface.frame import frame_of
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
@@ -42,7 +42,7 @@ class SurfaceFamily:
         graph: FaceGraph,
         bounded: Bounded,
         settings: SurfaceSettings,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> Recognition:
         """Return one feature a group of equal patches, largest first; local ones are marked.
 
@@ -76,7 +76,7 @@ class SurfaceFamily:
             _feature(f"group-{k:02}", g, sizes, bends, settings) for k, g in enumerate(groups, 1)
         )
         apart = sliver | small
-        narrow = _told(
+        narrow = _findings(
             "surface.sliver",
             sizes,
             size,
@@ -84,7 +84,7 @@ class SurfaceFamily:
             "sliver_width",
             f"narrower than {sliver_width:.3g} mm on average",
         )
-        tiny = _told(
+        tiny = _findings(
             "surface.small",
             sizes,
             size,
@@ -160,7 +160,7 @@ def _feature(
     )
 
 
-def _told(
+def _findings(
     code: str, sizes: PatchSizes, size: Floats, rows: Bools, limit: str, words: str
 ) -> tuple[Finding, ...]:
     """Return what patches join no group, and why: how many, how large across, and how much area; nothing when there are none."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Bounded
 from trunnion.recognize.surface.size import Parts, box_sides, repaired
 
@@ -46,7 +46,7 @@ class SizeError:
 
 
 def size_errors(
-    bounded: Bounded, tags: Sequence[int], counts: Sequence[int], progress: Progress = QUIET
+    bounded: Bounded, tags: Sequence[int], counts: Sequence[int], progress: Progress = NO_PROGRESS
 ) -> tuple[SizeError, ...]:
     """Return the error and the cost of the feature sizes of some patches for every number of points on an edge, the paper's repair last.
 

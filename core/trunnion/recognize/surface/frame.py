@@ -27,9 +27,9 @@ def frame_of(graph: FaceGraph) -> Frame:
     curved = (np.array(graph.surface) != "plane") & (graph.area > 0.0)
     most = AWAY * float(graph.area[curved].sum())
     seen = [
-        (_seen(graph, curved, way), way)
-        for way in _directions(graph)
-        if _seen(graph, curved, -way) <= most
+        (_seen(graph, curved, direction), direction)
+        for direction in _directions(graph)
+        if _seen(graph, curved, -direction) <= most
     ]
     area, best = max(seen, key=lambda found: found[0], default=(0.0, WORLD.z))
     if _seen(graph, curved, WORLD.z) >= AS_GOOD * area:
@@ -37,10 +37,10 @@ def frame_of(graph: FaceGraph) -> Frame:
     return Frame(np.zeros(3), _across(best), best)
 
 
-def _seen(graph: FaceGraph, curved: Bools, way: Floats) -> float:
+def _seen(graph: FaceGraph, curved: Bools, direction: Floats) -> float:
     """Return the curved area (mm2) whose normals rise towards a direction; each sample of a face represents its share of it."""
     each = np.bincount(graph.sample_face, minlength=len(graph.surface))[graph.sample_face]
-    rises = (graph.sample_normal @ way > np.sin(FACING)) & curved[graph.sample_face]
+    rises = (graph.sample_normal @ direction > np.sin(FACING)) & curved[graph.sample_face]
     return float((graph.area[graph.sample_face] / each)[rises].sum())
 
 
@@ -48,16 +48,16 @@ def _directions(graph: FaceGraph) -> list[Floats]:
     """Return the file's axes and the normals of planes, both senses, each once."""
     planes = graph.normal[(np.array(graph.surface) == "plane") & (graph.area > 0.0)]
     found: list[Floats] = []
-    for way in (*np.eye(3)[::-1], *-np.eye(3)[::-1], *planes, *-planes):
-        if not any(way @ known > np.cos(ANGLE) for known in found):
-            found.append(np.asarray(way, dtype=float))
+    for direction in (*np.eye(3)[::-1], *-np.eye(3)[::-1], *planes, *-planes):
+        if not any(direction @ known > np.cos(ANGLE) for known in found):
+            found.append(np.asarray(direction, dtype=float))
     return found
 
 
-def _across(way: Floats) -> Floats:
+def _across(direction: Floats) -> Floats:
     """Return the unit direction across a direction that is nearest to the file's x, or to its y where that is along it."""
     for axis in np.eye(3)[:2]:
-        across = axis - (axis @ way) * way
+        across = axis - (axis @ direction) * direction
         length = float(np.linalg.norm(across))
         if length > 0.5:
             return np.asarray(across / length, dtype=float)

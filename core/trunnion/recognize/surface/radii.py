@@ -105,9 +105,9 @@ def _all_over(curvature: Floats) -> float:
 
 def _blend(graph: FaceGraph, tag: int, even: Mapping[int, Sequence[float]]) -> tuple[float, float]:
     """Return the radius of a face as a fillet and as a rounding: those it has all over and leaves smoothly on two sides at least."""
-    beside = [even.get(row + 1, (np.nan, np.nan)) for row in graph.neighbours(tag - 1, SMOOTH)]
+    adjacent = [even.get(row + 1, (np.nan, np.nan)) for row in graph.neighbours(tag - 1, SMOOTH)]
     found = []
     for k, radius in enumerate(even[tag]):
-        same = sum(radius / OTHER <= other[k] <= radius * OTHER for other in beside)
-        found.append(radius if len(beside) - same >= 2 else float("nan"))
+        same = sum(radius / OTHER <= other[k] <= radius * OTHER for other in adjacent)
+        found.append(radius if len(adjacent) - same >= 2 else float("nan"))
     return found[0], found[1]

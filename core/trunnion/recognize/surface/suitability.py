@@ -68,12 +68,12 @@ def _directions(graph: FaceGraph) -> list[Floats]:
     normal, area = graph.normal[plane], graph.area[plane]
     found: list[tuple[float, Floats]] = []
     while area.any():
-        way = normal[int(np.argmax(area))]
-        along = np.abs(normal @ way) > np.cos(ANGLE)
-        found.append((float(area[along].sum()), way))
+        direction = normal[int(np.argmax(area))]
+        along = np.abs(normal @ direction) > np.cos(ANGLE)
+        found.append((float(area[along].sum()), direction))
         area = np.where(along, 0.0, area)
     most = max((size for size, _ in found), default=0.0)
-    return [way for size, way in found if size >= MAIN * most]
+    return [direction for size, direction in found if size >= MAIN * most]
 
 
 def _leans(graph: FaceGraph, z: Floats) -> Bools:

@@ -16,7 +16,7 @@ from trunnion.geometry.arrays import Floats, unit
 
 AxisField = Callable[[Floats, Floats, Floats], Floats]
 _AT_VECTOR = 1e-9
-"""mm: a contact this close to the place of a vector has that vector."""
+"""mm: a contact this close to the position of a vector has that vector."""
 
 
 def leaning(lead: float, tilt: float) -> AxisField:
@@ -39,9 +39,9 @@ def fixed(direction: ArrayLike) -> AxisField:
     return field
 
 
-def from_point(place: ArrayLike, away: bool = True) -> AxisField:
-    """Return the field of axes that point away from a place (3,), as spokes do, or towards it."""
-    point = np.asarray(place, dtype=np.float64)
+def from_point(position: ArrayLike, away: bool = True) -> AxisField:
+    """Return the field of axes that point away from a position (3,), as spokes do, or towards it."""
+    point = np.asarray(position, dtype=np.float64)
     return from_curve(np.stack([point, point]), away)
 
 
@@ -61,23 +61,23 @@ def from_curve(curve: ArrayLike, away: bool = True) -> AxisField:
     return field
 
 
-def interpolated(places: ArrayLike, axes: ArrayLike) -> AxisField:
-    """Return the field between chosen vectors: axes (m, 3) at places (m, 3), weighed by the inverse square of the distance to each."""
-    where, chosen = (
-        np.asarray(places, dtype=np.float64).reshape(-1, 3),
+def interpolated(positions: ArrayLike, axes: ArrayLike) -> AxisField:
+    """Return the field between chosen vectors: axes (m, 3) at positions (m, 3), weighed by the inverse square of the distance to each."""
+    where, directions = (
+        np.asarray(positions, dtype=np.float64).reshape(-1, 3),
         unit(axes, "tool axis").reshape(-1, 3),
     )
 
     def field(point: Floats, normal: Floats, feed: Floats) -> Floats:
         away = np.linalg.norm(point[:, None] - where[None], axis=2)
         weight = 1.0 / np.maximum(away, _AT_VECTOR) ** 2
-        mean = (weight / weight.sum(axis=1, keepdims=True)) @ chosen
+        mean = (weight / weight.sum(axis=1, keepdims=True)) @ directions
         size = np.linalg.norm(mean, axis=1, keepdims=True)
         # Vectors that cancel each other say nothing: the nearest one counts.
         return np.where(
             size > math.sqrt(_AT_VECTOR),
             mean / np.maximum(size, _AT_VECTOR),
-            chosen[np.argmin(away, axis=1)],
+            directions[np.argmin(away, axis=1)],
         )
 
     return field
@@ -85,16 +85,16 @@ def interpolated(places: ArrayLike, axes: ArrayLike) -> AxisField:
 
 def nearest(curve: Floats, point: Floats) -> Floats:
     """Return the nearest point (k, 3) of a polyline (m, 3) to each point (k, 3)."""
-    start, way = curve[:-1], np.diff(curve, axis=0)
-    square = (way * way).sum(axis=1)
-    share = ((point[:, None] - start) * way).sum(axis=2) / np.where(square > 0.0, square, 1.0)
-    on = start + np.clip(share, 0.0, 1.0)[:, :, None] * way
+    start, direction = curve[:-1], np.diff(curve, axis=0)
+    square = (direction * direction).sum(axis=1)
+    share = ((point[:, None] - start) * direction).sum(axis=2) / np.where(square > 0.0, square, 1.0)
+    on = start + np.clip(share, 0.0, 1.0)[:, :, None] * direction
     row = np.argmin(np.linalg.norm(point[:, None] - on, axis=2), axis=1)
     return on[np.arange(len(point)), row]
 
 
 def eased(axis: Floats, reach: float) -> Floats:
-    """Return axes (k, 3) at even steps of a way, each the mean of those about it, weighed by a bell curve `reach` steps wide (one sigma).
+    """Return axes (k, 3) at even steps of a path, each the mean of those about it, weighed by a bell curve `reach` steps wide (one sigma).
 
     What turns at a rate keeps to it: the mean of turns is no faster than the fastest of them.
     """

@@ -1,4 +1,4 @@
-"""Settings and codes of findings that surface strategies have in common: declared once, each setting in its own place on their pages."""
+"""Settings and codes of findings that surface strategies have in common: declared once, each setting in its own position on their pages."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Contact passes: where a cutter is to touch the faces one place after the other, before it is known how it stands there.
+"""Contact passes: where a cutter is to touch the faces one position after the other, before its axis there is known.
 
-Between two contacts the face is not asked again: the way is the cubic whose ends lie on the face and run along it (across its normals),
+Between two contacts the face is not queried again: the path is the cubic whose ends lie on the face and run along it (across its normals),
 which on a round face leaves it by less than the sixth power of the turn.
 """
 
@@ -39,15 +39,21 @@ class Contacts:
 
     @property
     def feed(self) -> Floats:
-        """The unit direction of the way at each contact (k, 3), along the face."""
+        """The unit direction of the path at each contact (k, 3), along the face."""
         step = np.diff(self.point, axis=0)
         size = np.linalg.norm(step, axis=1, keepdims=True)
-        way = _scaled(step)
+        direction = _scaled(step)
         if self.closed:
-            before, after = np.vstack([way[-1:], way]), np.vstack([way, way[:1]])
+            before, after = (
+                np.vstack([direction[-1:], direction]),
+                np.vstack([direction, direction[:1]]),
+            )
             length_before, length_after = np.vstack([size[-1:], size]), np.vstack([size, size[:1]])
         else:
-            before, after = np.vstack([way[:1], way]), np.vstack([way, way[-1:]])
+            before, after = (
+                np.vstack([direction[:1], direction]),
+                np.vstack([direction, direction[-1:]]),
+            )
             length_before, length_after = np.vstack([size[:1], size]), np.vstack([size, size[-1:]])
         # The circle through three contacts: the shorter chord says more of the direction at the middle one.
         return _along(length_after * before + length_before * after, self.normal)
@@ -66,13 +72,13 @@ class Contacts:
         return Contacts(point=self.point[::-1], normal=self.normal[::-1], closed=self.closed)
 
 
-def between(point: Floats, normal: Floats, feed: Floats, place: Floats) -> tuple[Floats, Floats]:
-    """Return points and unit normals (k, 3) at places (k,) along contacts (n, 3).
+def between(point: Floats, normal: Floats, feed: Floats, position: Floats) -> tuple[Floats, Floats]:
+    """Return points and unit normals (k, 3) at positions (k,) along contacts (n, 3).
 
-    Place 2.25 is a quarter of the way from the third contact to the next; `feed` (n, 3) are the unit directions of the way.
+    Position 2.25 is a quarter of the distance from the third contact to the next; `feed` (n, 3) are the unit directions of the path.
     """
-    row = np.clip(place.astype(np.int64), 0, len(point) - 2)
-    u = (place - row)[:, None]
+    row = np.clip(position.astype(np.int64), 0, len(point) - 2)
+    u = (position - row)[:, None]
     a, b, start, end = point[row], point[row + 1], feed[row], feed[row + 1]
     # As long as the tangents of an arc's cubic: chord / cos^2(turn / 4).
     half = np.sqrt(0.5 * (1.0 + np.clip((start * end).sum(axis=1, keepdims=True), -1.0, 1.0)))
@@ -85,10 +91,10 @@ def between(point: Floats, normal: Floats, feed: Floats, place: Floats) -> tuple
     return found, _scaled((1.0 - u) * normal[row] + u * normal[row + 1])
 
 
-def axis_between(axis: Floats, place: Floats) -> Floats:
-    """Return unit axes (k, 3) at places (k,) along axes (n, 3), each turning evenly to the next."""
-    row = np.clip(place.astype(np.int64), 0, len(axis) - 2)
-    return slerp(axis[row], axis[row + 1], place - row)
+def axis_between(axis: Floats, position: Floats) -> Floats:
+    """Return unit axes (k, 3) at positions (k,) along axes (n, 3), each turning evenly to the next."""
+    row = np.clip(position.astype(np.int64), 0, len(axis) - 2)
+    return slerp(axis[row], axis[row + 1], position - row)
 
 
 def slerp(start: Floats, end: Floats, share: Floats) -> Floats:
@@ -101,9 +107,9 @@ def slerp(start: Floats, end: Floats, share: Floats) -> Floats:
     return _scaled(a[:, None] * start + b[:, None] * end)
 
 
-def _along(way: Floats, normal: Floats) -> Floats:
-    """Return the unit directions (k, 3) of a way seen along faces with normals (k, 3)."""
-    return _scaled(way - (way * normal).sum(axis=1, keepdims=True) * normal)
+def _along(direction: Floats, normal: Floats) -> Floats:
+    """Return the unit directions (k, 3) of a path seen along faces with normals (k, 3)."""
+    return _scaled(direction - (direction * normal).sum(axis=1, keepdims=True) * normal)
 
 
 def _scaled(vectors: Floats) -> Floats:

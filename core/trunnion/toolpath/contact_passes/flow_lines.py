@@ -1,7 +1,7 @@
 """Flow lines over joined patches between two guide curves, and one continuous spiral where these are rims of a tube or ring.
 
 A blend goes from 0 on the first guide to 1 on the second (`geometry/sheet/fields.py`); its level lines are the passes, as many as keep
-every two neighbours within a stepover. They are ways of contacts: where the tool leans on them is for others to say.
+every two neighbours within a stepover. They are lines of contacts: where the tool leans on them is for others to say.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from trunnion.geometry.sheet.sheet import Sheet, sheet_of, split_finely
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.guides import (
     Guides,
-    guides_beside,
+    adjacent_guides,
     guides_of,
     holes_of,
     tags_named,
@@ -36,9 +36,9 @@ ENOUGH = 6000
 """Squares, as wide as the longest edge, that an area is cut in at most: a blend is smooth, a finer one is no better."""
 SMALLEST = 0.002
 """Share of the area whose steps may be wider than the passes' own: a blend stands still in a sharp corner between guide and rim."""
-CROWDED = 8.0
-"""Passes in the room of one, on the average over an area and one more, from which on flow lines are no way to cut it: guides run into each
-other, or it is a scrap whose guides have little to do with its shape."""
+MOST_DENSE = 8.0
+"""Passes in the room of one, on the average over an area and one more, from which on flow lines are no way to cut it: guides run
+into each other, or it is a scrap whose guides have little to do with its shape."""
 
 
 class DenseFlowLines(Refused):
@@ -60,7 +60,7 @@ def flow_lines(
     drive: SurfaceDrive,
     tool: Tool,
     flow: FlowParameters = FlowParameters(),
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Contacts, ...]:
     """Return the passes of contacts over the drive's faces from the first guide to the second, in the cutting frame.
 
@@ -98,7 +98,7 @@ def _guides(sheet: Sheet, drive: SurfaceDrive, flow: FlowParameters) -> Guides:
     first, second = tags_named(flow.first_guide), tags_named(flow.second_guide)
     if bool(first) != bool(second):
         raise BadInput("flow lines need both guides, or none of them to have them chosen")
-    return guides_beside(sheet, drive.skin, first, second) if first else guides_of(sheet)
+    return adjacent_guides(sheet, drive.skin, first, second) if first else guides_of(sheet)
 
 
 def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> list[SheetLine]:
@@ -108,7 +108,7 @@ def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> 
     slope, area = metric.slope(field)[real], metric.sheet.area()[real]
     order = np.argsort(slope)
     narrowest = slope[order[np.searchsorted(np.cumsum(area[order]), SMALLEST * area.sum())]]
-    if CROWDED * narrowest * (1.0 + float(area.sum() / (slope @ area))) < 1.0:
+    if MOST_DENSE * narrowest * (1.0 + float(area.sum() / (slope @ area))) < 1.0:
         raise DenseFlowLines(
             "flow lines between these guides would lie far closer than the scallop wants; passes at a constant scallop don't, "
             "nor may those between other guides"
@@ -132,12 +132,12 @@ def _wound(
             for line in whole_levels(metric.sheet, field * count + sign * angle, sign * turns)
         ]
         spiral = max(turning, key=lambda line: len(line.share))
-        way = spiral.value(field)
-        if way[-1] > way[0]:
+        field_value = spiral.value(field)
+        if field_value[-1] > field_value[0]:
             break
     first, last = lines[0], lines[-1]
-    between = np.flatnonzero((way > 0.5 / count) & (way < 1.0 - 0.5 / count))
-    if way[0] >= way[-1] or not len(between) or not first.closed or not last.closed:
+    between = np.flatnonzero((field_value > 0.5 / count) & (field_value < 1.0 - 0.5 / count))
+    if field_value[0] >= field_value[-1] or not len(between) or not first.closed or not last.closed:
         return lines
     middle = spiral.of(slice(int(between[0]), int(between[-1]) + 1))
     start, end = (
@@ -146,10 +146,12 @@ def _wound(
     return [_joined([_begun(metric.sheet, first, start), middle, _begun(metric.sheet, last, end)])]
 
 
-def _begun(sheet: Sheet, ring: SheetLine, place: Floats) -> SheetLine:
-    """Return a closed line that begins and ends where it comes nearest to a place (1, 3)."""
+def _begun(sheet: Sheet, ring: SheetLine, position: Floats) -> SheetLine:
+    """Return a closed line that begins and ends where it comes nearest to a position (1, 3)."""
     points, _ = sheet.on_edges(ring.ends[:-1], ring.share[:-1])
-    order = np.roll(np.arange(len(points)), -int(np.argmin(np.linalg.norm(points - place, axis=1))))
+    order = np.roll(
+        np.arange(len(points)), -int(np.argmin(np.linalg.norm(points - position, axis=1)))
+    )
     order = np.append(order, order[0])
     return SheetLine(ends=ring.ends[order], share=ring.share[order], closed=True, level=ring.level)
 

@@ -76,17 +76,18 @@ def guides_of(sheet: Sheet) -> Guides:
     return Guides(first=sides[i], second=sides[j], rings=False)
 
 
-def guides_beside(
+def adjacent_guides(
     sheet: Sheet, skin: Skin, first: tuple[int, ...], second: tuple[int, ...]
 ) -> Guides:
     """Return the guides along which a sheet meets faces (tags) of the skin; raise `BadInput` where it does not."""
     rims = sheet.rims()
     found = []
     for tags in (first, second):
-        beside = [
-            rim[_beside(sheet.points[rim], skin, skin.triangles[skin.of(tags)])] for rim in rims
+        rim_rows = [
+            rim[_on_triangles(sheet.points[rim], skin, skin.triangles[skin.of(tags)])]
+            for rim in rims
         ]
-        rows = np.concatenate([np.zeros(0, np.int64), *beside])
+        rows = np.concatenate([np.zeros(0, np.int64), *rim_rows])
         if len(rows) < 2:
             raise BadInput(
                 f"no rim of the area lies along {', '.join(f'face {t}' for t in tags)}: name faces next to it as guides"
@@ -96,20 +97,20 @@ def guides_beside(
     return Guides(**_apart(found[0], found[1]), rings=rings)
 
 
-def _beside(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
-    """Say which points (k,) of a rim lie on triangles (t, 3) of a skin: on a point of these, or between two that one of their sides
+def _on_triangles(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
+    """Return which points (k,) of a rim lie on triangles (t, 3) of a skin: on a point of these, or between two that one of their sides
     joins."""
     used = np.unique(triangles)
     if not len(used):
         return np.zeros(len(rim), bool)
-    gap, place = cKDTree(skin.points[used]).query(rim)
+    gap, position = cKDTree(skin.points[used]).query(rim)
     on = np.asarray(gap <= tolerance.JOINED_POINTS)
     sides = {
         frozenset(side)
         for k in range(3)
         for side in zip(triangles[:, k].tolist(), triangles[:, (k + 1) % 3].tolist(), strict=True)
     }
-    rows, number, n = np.flatnonzero(on), used[np.asarray(place)].tolist(), len(rim)
+    rows, number, n = np.flatnonzero(on), used[np.asarray(position)].tolist(), len(rim)
     for row, after in zip(rows.tolist(), np.roll(rows, -1).tolist(), strict=True):
         width = (after - row) % n
         if 2 * width <= n and frozenset((number[row], number[after])) in sides:

@@ -23,7 +23,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.upright.tracing import follow, thinned
 from trunnion.toolpath.motion.builder import PathBuilder
@@ -35,20 +35,20 @@ NEAR = 3.0
 QUARTER = 16
 """Straight moves in a lead's quarter circle: at 2 mm, 2 um from it."""
 BETWEEN = 9
-"""Places between two leads that are asked for room."""
+"""Positions between two leads that are tested for space."""
 LIFT_STEP = 0.02
 """mm: the difference of what two neighbours on a lead are lifted by, from which on the lead is left out."""
 SAME = 1e-9
 """Two directions that differ by less are one."""
-SWING = math.cos(math.radians(60.0))
-"""The least part along z of an axis that may turn on its way over the work; a tool that leans more is set upright before."""
+REORIENT = math.cos(math.radians(60.0))
+"""The least part along z of an axis that may turn on a move over the work; a tool that leans more is set upright before."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkParameters:
     """How passes are linked: the `stepover` between them, the `safety` distance of rapids and the `lead_radius` in mm; `order` is "given"
     or "nearest"; `reversing` allows passes to be cut the other way where that is nearer; `chord` is the chord error of links, mm. With
-    `arcs` a near pass is reached by the leads of both, and above the stock where these have no room: for walls, beside which a cutter that
+    `arcs` a near pass is reached by the leads of both, and above the stock where these have no space: for walls, beside which a cutter that
     follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm."""
 
     stepover: float
@@ -68,31 +68,35 @@ def linked(
     data: CuttingData,
     stock: PlanningStock,
     setup: Setup,
-    manner: LinkParameters,
-    progress: Progress = QUIET,
+    parameters: LinkParameters,
+    progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
     passes = [p for p in passes if len(p) > 1]
     if not passes:
         return EMPTY
-    passes = _ordered(passes, manner, progress.part(0.0, 0.2))
-    near = _near(passes, manner)
-    leads_in, leads_out, has_room = _leads(passes, drive, tool, manner, progress.part(0.2, 0.4))
-    if manner.arcs:
-        near &= has_room
-        ways = iter(
+    # Order, then leads and links of all passes at once: drops on the skin are cheap only in batches.
+    passes = _ordered(passes, parameters, progress.part(0.0, 0.2))
+    near = _near(passes, parameters)
+    leads_in, leads_out, has_links = _leads(
+        passes, drive, tool, parameters, progress.part(0.2, 0.4)
+    )
+    if parameters.arcs:
+        near &= has_links
+        links = iter(
             [
                 np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]])
                 for k in np.flatnonzero(near).tolist()
             ]
         )
     else:
-        ways = iter(_links(passes, near, drive, tool, manner, progress.part(0.4, 0.9)))
-    blocks = _Blocks(tool, data, stock, setup, drive, manner.safety)
+        links = iter(_links(passes, near, drive, tool, parameters, progress.part(0.4, 0.9)))
+    # Assemble: a near pass is linked on the surface, a far one by its leads and a travel through the air.
+    blocks = _Blocks(tool, data, stock, setup, drive, parameters.safety)
     for k, one in enumerate(passes):
         progress.at(0.9 + 0.1 * k / len(passes), "Linking passes")
         if k and near[k - 1]:
-            blocks.feed(next(ways), one.axis[0], Mark.LINK)
+            blocks.feed(next(links), one.axis[0], Mark.LINK)
         else:
             if k:
                 blocks.feed(leads_out[k - 1], passes[k - 1].axis[-1], Mark.LEAD)
@@ -127,7 +131,7 @@ class _Blocks:
 
     @property
     def axis(self) -> Floats:
-        """How the tool stands (3,)."""
+        """How the tool is_upright (3,)."""
         return self._parts[-1][1][-1]
 
     def feed(self, tips: Floats, axis: Floats, mark: Mark) -> None:
@@ -137,23 +141,23 @@ class _Blocks:
                 (tips, np.broadcast_to(axis, tips.shape), Motion.LINE, self._data.feed, mark)
             )
 
-    def travel(self, place: Floats, axis: Floats) -> None:
-        """Bring the tip to a place (3,) through the air, at the end by a feed."""
-        stops = self._outside(place, axis)
+    def travel(self, position: Floats, axis: Floats) -> None:
+        """Bring the tip to a position (3,) through the air, at the end by a feed."""
+        stops = self._outside(position, axis)
         if self._parts and _is_upright(self.axis) and _is_upright(axis):
-            self._lift(place)
+            self._lift(position)
         else:
             if self._parts:
                 self._leave()
-                if min(self.axis[2], axis[2]) < SWING:
+                if min(self.axis[2], axis[2]) < REORIENT:
                     self._rapid(self.here, UPRIGHT)
                     self._rapid(np.append(stops[-1][:2], self.here[2]), UPRIGHT)
             for stop in stops[::-1]:
                 self._rapid(stop, axis)
         if _is_upright(axis):
-            self._down(place)
+            self._down(position)
         else:
-            self._add(place, axis, Motion.LINE, self._data.feed, Mark.LEAD)
+            self._add(position, axis, Motion.LINE, self._data.feed, Mark.LEAD)
 
     def finished(self) -> Toolpath:
         """Return the path, its last block a retract to the clearance height."""
@@ -171,21 +175,24 @@ class _Blocks:
             centre=np.full((int(kept.sum()), 3), np.nan),
         )
 
-    def _lift(self, place: Floats) -> None:
-        """Go over a place, upright: no higher than what may be on the way demands."""
-        safe = lowest_tip(self._air, self.here[:2], place[:2]) + self._air.safety
-        height = min(max(safe, float(self.here[2]), float(place[2])), self._air.clearance)
+    def _lift(self, position: Floats) -> None:
+        """Go over a position, upright: no higher than what may be in between demands."""
+        safe = lowest_tip(self._air, self.here[:2], position[:2]) + self._air.safety
+        height = min(max(safe, float(self.here[2]), float(position[2])), self._air.clearance)
         self._rapid(np.append(self.here[:2], height), UPRIGHT)
-        self._rapid(np.append(place[:2], height), UPRIGHT)
+        self._rapid(np.append(position[:2], height), UPRIGHT)
 
-    def _down(self, place: Floats) -> None:
+    def _down(self, position: Floats) -> None:
         """Come down upright: at rapid as far as the stock allows, then at feed, slowly where there is material."""
-        safe = max(lowest_tip(self._air, place[:2], place[:2]), float(place[2])) + self._air.safety
-        self._rapid(np.append(place[:2], min(safe, float(self.here[2]))), UPRIGHT)
-        if is_free(self._air, place[:2], float(place[2])):
-            self._add(place, UPRIGHT, Motion.LINE, self._data.feed, Mark.LEAD)
+        safe = (
+            max(lowest_tip(self._air, position[:2], position[:2]), float(position[2]))
+            + self._air.safety
+        )
+        self._rapid(np.append(position[:2], min(safe, float(self.here[2]))), UPRIGHT)
+        if is_free(self._air, position[:2], float(position[2])):
+            self._add(position, UPRIGHT, Motion.LINE, self._data.feed, Mark.LEAD)
         else:
-            self._add(place, UPRIGHT, Motion.LINE, self._data.plunge_feed, Mark.ENTRY)
+            self._add(position, UPRIGHT, Motion.LINE, self._data.plunge_feed, Mark.ENTRY)
 
     def _leave(self) -> None:
         axis = self.axis
@@ -193,8 +200,8 @@ class _Blocks:
             self._rapid(stop, axis)
 
     def _outside(self, here: Floats, axis: Floats) -> list[Floats]:
-        """Return the places that a tool passes on its way along its axis from the work up to clearance: past the blank's side and up from
-        there where it leans so much that the way up is longer."""
+        """Return the positions that a tool passes along its axis from the work up to clearance: past the blank's side and up
+        from there where it leans so much that the path up is longer."""
         height = self._air.clearance + _below(self._tool, float(axis[2]))
         up = (height - here[2]) / axis[2] if axis[2] > 0.0 else math.inf
         aside = (
@@ -202,23 +209,23 @@ class _Blocks:
             + self._air.safety
         )
         wall = np.where(axis[:2] > 0.0, self._drive.high[:2] + aside, self._drive.low[:2] - aside)
-        beside = np.divide(
+        to_wall = np.divide(
             wall - here[:2], axis[:2], out=np.full(2, math.inf), where=axis[:2] != 0.0
         ).min()
-        if axis[2] >= SWING or up <= beside:
+        if axis[2] >= REORIENT or up <= to_wall:
             return [here + up * axis]
-        if beside == math.inf:
+        if to_wall == math.inf:
             raise Refused(
                 f"{self._drive.feature}: a tool that points straight up can't be brought to the part"
             )
-        stop = here + max(beside, 0.0) * axis
+        stop = here + max(to_wall, 0.0) * axis
         return [stop, np.append(stop[:2], max(height, stop[2]))]
 
-    def _rapid(self, place: Floats, axis: Floats) -> None:
-        self._add(place, axis, Motion.RAPID, 0.0, Mark.RETRACT)
+    def _rapid(self, position: Floats, axis: Floats) -> None:
+        self._add(position, axis, Motion.RAPID, 0.0, Mark.RETRACT)
 
-    def _add(self, place: Floats, axis: Floats, motion: Motion, feed: float, mark: Mark) -> None:
-        self._parts.append((np.asarray(place)[None], np.asarray(axis)[None], motion, feed, mark))
+    def _add(self, position: Floats, axis: Floats, motion: Motion, feed: float, mark: Mark) -> None:
+        self._parts.append((np.asarray(position)[None], np.asarray(axis)[None], motion, feed, mark))
 
 
 def _below(tool: Tool, upright: float) -> float:
@@ -236,7 +243,7 @@ def _is_upright(axis: Floats) -> bool:
 
 
 def _goes(position: Floats, axis: Floats) -> Bools:
-    """Say which blocks (n,) go anywhere or turn the tool: posts write four decimals, so a shorter move would be an empty block."""
+    """Return which blocks (n,) go anywhere or turn the tool: posts write four decimals, so a shorter move would be an empty block."""
     kept = np.ones(len(position), dtype=bool)
     while True:
         rows = np.flatnonzero(kept)
@@ -250,38 +257,41 @@ def _goes(position: Floats, axis: Floats) -> Bools:
         kept[rows[1:][still]] = False
 
 
-def _ordered(passes: Sequence[Pass], manner: LinkParameters, progress: Progress) -> list[Pass]:
+def _ordered(passes: Sequence[Pass], parameters: LinkParameters, progress: Progress) -> list[Pass]:
     """Return the passes in the order they are cut, closed ones begun where they come nearest to the end of the one before."""
-    if manner.order == "nearest":
-        passes = _nearest(passes, manner.reversing, progress)
+    if parameters.order == "nearest":
+        passes = _nearest(passes, parameters.reversing, progress)
     out: list[Pass] = []
     for one in passes:
         if one.closed:
-            one = _overlapped(_begun(one, out[-1].tip[-1] if out else one.tip[0]), manner.overlap)
+            one = _overlapped(
+                _begun(one, out[-1].tip[-1] if out else one.tip[0]), parameters.overlap
+            )
         out.append(one)
     return out
 
 
 def _nearest(passes: Sequence[Pass], reversing: bool, progress: Progress) -> list[Pass]:
     """Return the passes so that each begins near where the one before ends, from the first on."""
+    # Greedy nearest neighbour on the passes' ends, O(m^2).
     starts, ends = (np.array([p.tip[k] for p in passes]) for k in (0, -1))
-    out, left = [passes[0]], np.ones(len(passes), dtype=bool)
-    left[0] = False
-    while left.any():
+    out, remaining = [passes[0]], np.ones(len(passes), dtype=bool)
+    remaining[0] = False
+    while remaining.any():
         progress.at(len(out) / len(passes), "Ordering passes")
-        rows, here = np.flatnonzero(left), out[-1].tip[-1]
+        rows, here = np.flatnonzero(remaining), out[-1].tip[-1]
         ahead = np.linalg.norm(starts[rows] - here, axis=1)
         back = np.linalg.norm(ends[rows] - here, axis=1)
         turns = reversing and back.min() < ahead.min() - tolerance.COINCIDENT
         row = int(rows[np.argmin(back if turns else ahead)])
         out.append(passes[row].reversed() if turns else passes[row])
-        left[row] = False
+        remaining[row] = False
     return out
 
 
-def _begun(one: Pass, place: Floats) -> Pass:
-    """Return a closed pass that begins at its tip nearest to a place."""
-    row = int(np.argmin(np.linalg.norm(one.tip[:-1] - place, axis=1)))
+def _begun(one: Pass, position: Floats) -> Pass:
+    """Return a closed pass that begins at its tip nearest to a position."""
+    row = int(np.argmin(np.linalg.norm(one.tip[:-1] - position, axis=1)))
     order = np.append(np.roll(np.arange(len(one) - 1), -row), row)
     return Pass(tip=one.tip[order], axis=one.axis[order], normal=one.normal[order], closed=True)
 
@@ -304,14 +314,14 @@ def _overlapped(one: Pass, overlap: float) -> Pass:
     return Pass(tip=tip, axis=unit(axis), normal=normal)
 
 
-def _near(passes: Sequence[Pass], manner: LinkParameters) -> Bools:
-    """Say of each pass but the last whether the next one is reached without lifting."""
+def _near(passes: Sequence[Pass], parameters: LinkParameters) -> Bools:
+    """Return for each pass but the last whether the next one is reached without lifting."""
     ends, starts = (
         np.array([p.tip[-1] for p in passes[:-1]]).reshape(-1, 3),
         np.array([p.tip[0] for p in passes[1:]]).reshape(-1, 3),
     )
     turned = np.array([np.abs(a.axis[-1] - b.axis[0]).max() for a, b in pairwise(passes)])
-    near = np.linalg.norm(starts - ends, axis=1) <= NEAR * manner.stepover
+    near = np.linalg.norm(starts - ends, axis=1) <= NEAR * parameters.stepover
     return np.asarray(near & (turned < SAME))
 
 
@@ -320,10 +330,10 @@ def _links(
     near: Bools,
     drive: SurfaceDrive,
     tool: Tool,
-    manner: LinkParameters,
+    parameters: LinkParameters,
     progress: Progress,
 ) -> list[Floats]:
-    """Return the ways over the surface (k, 3) from the ends of near passes to the next ones: straight, lifted where that would gouge.
+    """Return the paths over the surface (k, 3) from the ends of near passes to the next ones: straight, lifted where that would gouge.
 
     Between leaning passes they are straight: a stepover is short.
     """
@@ -336,25 +346,25 @@ def _links(
             drive.skin.drop,
             lower_side(tool, drive.allowance),
             [c[:, :2] for c, up in zip(chords, upright) if up],
-            manner.chord,
+            parameters.chord,
             lowest,
             progress,
         )
     )
     return [
-        _bridged(next(over), chord, drive.allowance, manner.chord) if up else chord
+        _bridged(next(over), chord, drive.allowance, parameters.chord) if up else chord
         for chord, up in zip(chords, upright)
     ]
 
 
-def _bridged(way: Floats, chord: Floats, allowance: float, error: float) -> Floats:
-    """Return a way over the surface (k, 3), the height of the chord (2, 3) between its ends where that is higher."""
-    run = np.hypot(*(way[:, :2] - chord[0, :2]).T)
-    share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(way))
+def _bridged(points: Floats, chord: Floats, allowance: float, error: float) -> Floats:
+    """Return a path over the surface (k, 3), the height of the chord (2, 3) between its ends where that is higher."""
+    run = np.hypot(*(points[:, :2] - chord[0, :2]).T)
+    share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(points))
     lifted = np.column_stack(
         [
-            way[:, :2],
-            np.maximum(way[:, 2] + allowance, chord[0, 2] + share * (chord[1, 2] - chord[0, 2])),
+            points[:, :2],
+            np.maximum(points[:, 2] + allowance, chord[0, 2] + share * (chord[1, 2] - chord[0, 2])),
         ]
     )
     return lifted[thinned(lifted, np.zeros(len(lifted), np.int64), error)]
@@ -364,30 +374,31 @@ def _leads(
     passes: Sequence[Pass],
     drive: SurfaceDrive,
     tool: Tool,
-    manner: LinkParameters,
+    parameters: LinkParameters,
     progress: Progress,
 ) -> tuple[Floats, Floats, Bools]:
-    """Return the ways (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
-    would gouge. And say of each pass but the last whether the way off it and onto the next one needs no lifting (m - 1,)."""
-    coming = _arcs(
+    """Return the links (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
+    would gouge. Also return for each pass but the last whether the path off it and onto the next one needs no lifting (m - 1,)."""
+    lead_in = _arcs(
         np.array([p.tip[0] for p in passes]),
         np.array([_off(p.tip, p.axis[0]) for p in passes]),
         np.array([p.normal[0] for p in passes]),
         np.array([p.axis[0] for p in passes]),
-        manner.lead_radius,
+        parameters.lead_radius,
     )[:, ::-1]
-    going = _arcs(
+    lead_out = _arcs(
         np.array([p.tip[-1] for p in passes]),
         np.array([_off(p.tip[::-1], p.axis[-1]) for p in passes]),
         np.array([p.normal[-1] for p in passes]),
         np.array([p.axis[-1] for p in passes]),
-        manner.lead_radius,
+        parameters.lead_radius,
     )
     upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
+    # Drop the cutter at all points of leads and of the chords between them, and lift what would gouge: max(floor + allowance - z, 0).
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
-    between = going[:-1, -1:] + share * (coming[1:, :1] - going[:-1, -1:])
-    ways = (coming, going, between)
-    flat = np.concatenate([w.reshape(-1, 3) for w in ways])
+    between = lead_out[:-1, -1:] + share * (lead_in[1:, :1] - lead_out[:-1, -1:])
+    links = (lead_in, lead_out, between)
+    flat = np.concatenate([w.reshape(-1, 3) for w in links])
     floor = drive.skin.drop.drop(
         flat[:, :2],
         lower_side(tool, drive.allowance),
@@ -398,31 +409,32 @@ def _leads(
     lifts = [
         x.reshape(w.shape[:2])
         for x, w in zip(
-            np.split(lift, np.cumsum([w[..., 0].size for w in ways])[:-1]), ways, strict=True
+            np.split(lift, np.cumsum([w[..., 0].size for w in links])[:-1]), links, strict=True
         )
     ]
-    for arcs, up, stands, nearest, row in zip(
-        (coming, going), lifts, upright, (-1, 0), (0, -1), strict=False
+    for arcs, up, is_upright, nearest, row in zip(
+        (lead_in, lead_out), lifts, upright, (-1, 0), (0, -1), strict=False
     ):
-        arcs[:, :, 2] += np.where(stands[:, None], up, 0.0)
+        arcs[:, :, 2] += np.where(is_upright[:, None], up, 0.0)
         # Lifted unevenly an arc runs along something steep, which its chords would enter: the tool then comes and goes along its axis.
-        uneven = stands & (
+        uneven = is_upright & (
             np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP
         )
         tips = np.array([p.tip[row] for p in passes])[uneven]
-        rise = np.arange(1, QUARTER + 1) * (manner.lead_radius / QUARTER)
+        rise = np.arange(1, QUARTER + 1) * (parameters.lead_radius / QUARTER)
         arcs[uneven] = (
             tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
         )
-    has_room = (lifts[0][1:].max(axis=1, initial=0.0) <= manner.chord) & (
-        lifts[1][:-1].max(axis=1, initial=0.0) <= manner.chord
+    # A link along both arcs holds where neither arc nor the chord between was lifted by more than the chord error.
+    has_links = (lifts[0][1:].max(axis=1, initial=0.0) <= parameters.chord) & (
+        lifts[1][:-1].max(axis=1, initial=0.0) <= parameters.chord
     )
     return (
-        coming,
-        going,
+        lead_in,
+        lead_out,
         np.asarray(
-            has_room
-            & (lifts[2].max(axis=1, initial=0.0) <= manner.chord)
+            has_links
+            & (lifts[2].max(axis=1, initial=0.0) <= parameters.chord)
             & upright[1, :-1]
             & upright[0, 1:]
         ),
@@ -430,7 +442,7 @@ def _leads(
 
 
 def _off(tip: Floats, axis: Floats) -> Floats:
-    """Return the way (3,) on which a pass that begins with tips (k, 3) is left, or come to, there: straight on, or along the axis where
+    """Return the points (3,) on which a pass that begins with tips (k, 3) is left, or come to, there: straight on, or along the axis where
     the tool only turns about its tip, as a ball does in a hollow as round as it is."""
     away = tip[0] - tip
     moved = np.flatnonzero(np.linalg.norm(away, axis=1) > tolerance.COINCIDENT)

@@ -19,15 +19,16 @@ from trunnion.geometry.sheet.skin import Skin
 SMOOTH = math.cos(math.radians(45.0))
 """Cosine of the most that a strip turns away from the rim: it may run up a tight fillet, but not round an edge."""
 CLOSE = 0.25
-"""Of the strip's width: how far apart places along the rim are that distances are measured from."""
+"""Of the strip's width: how far apart positions along the rim are that distances are measured from."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OverrunStrip:
-    """The strip of a width (mm) past the rim of an area; the rim's places (k, 3) and the outward unit normals (k, 3) of the area there."""
+    """The strip of a width (mm) past the rim of an area; the rim's positions (k, 3) and the outward unit normals (k, 3) of the area
+    there."""
 
     skin: Skin
-    place: Floats
+    position: Floats
     normal: Floats
     width: float
 
@@ -35,31 +36,34 @@ class OverrunStrip:
     def of(skin: Skin, faces: tuple[int, ...], width: float) -> OverrunStrip:
         """Return the strip beside faces (tags) of a skin."""
         sheet = sheet_of(skin, faces)
-        place, normal = [np.zeros((0, 3))], [np.zeros((0, 3))]
+        position, normal = [np.zeros((0, 3))], [np.zeros((0, 3))]
         for rim in sheet.rims():
             a, b = rim, np.roll(rim, -1)
             size = np.linalg.norm(sheet.points[b] - sheet.points[a], axis=1)
             count = np.maximum(np.ceil(size / (CLOSE * width)), 1.0).astype(np.int64)
             row = np.repeat(np.arange(len(rim)), count)
             share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
-            for x, out in ((sheet.points, place), (sheet.normals, normal)):
+            for x, out in ((sheet.points, position), (sheet.normals, normal)):
                 out.append(x[a[row]] + share[:, None] * (x[b[row]] - x[a[row]]))
         joined = np.concatenate(normal)
         return OverrunStrip(
             skin=skin,
-            place=np.concatenate(place),
+            position=np.concatenate(position),
             normal=joined / np.linalg.norm(joined, axis=1, keepdims=True),
             width=width,
         )
 
     def has(self, contact: Floats, facet: Ints) -> Bools:
-        """Say of contacts (n, 3) on triangles (n,) of the skin, -1: none, whether they lie in the strip, or as near to the rim inside."""
+        """Return for contacts (n, 3) on triangles (n,) of the skin, -1: none, whether they lie in the strip, or as near to the rim
+        inside."""
         found = np.zeros(len(contact), dtype=bool)
         rows = np.flatnonzero(facet >= 0)
-        if len(rows) and len(self.place):
+        if len(rows) and len(self.position):
             away, nearest = (
                 np.asarray(x)
-                for x in cKDTree(self.place).query(contact[rows], distance_upper_bound=self.width)
+                for x in cKDTree(self.position).query(
+                    contact[rows], distance_upper_bound=self.width
+                )
             )
             rows, nearest = rows[np.isfinite(away)], nearest[np.isfinite(away)]
             corners = self.skin.normals[self.skin.triangles[facet[rows]]].sum(axis=1)

@@ -39,7 +39,7 @@ class Pass:
 
     @property
     def length(self) -> float:
-        """Length of the way of the tip in mm."""
+        """Length of the path of the tip in mm."""
         return float(np.linalg.norm(np.diff(self.tip, axis=0), axis=1).sum())
 
     def reversed(self) -> Pass:

@@ -52,14 +52,14 @@ class PathBuilder:
         if len(self) < 2:
             return np.zeros(2)
         end, start = np.array(self._position[-1]), np.array(self._position[-2])
-        way = end[:2] - start[:2]
+        direction = end[:2] - start[:2]
         if self._motion[-1] >= Motion.ARC_CW:
             ray = end[:2] - np.array(self._centre[-1])[:2]
-            way = np.array([-ray[1], ray[0]]) * (
+            direction = np.array([-ray[1], ray[0]]) * (
                 1.0 if self._motion[-1] == Motion.ARC_CCW else -1.0
             )
-        size = float(np.hypot(*way))
-        return way / size if size > tolerance.SHORT_MOVE else np.zeros(2)
+        size = float(np.hypot(*direction))
+        return direction / size if size > tolerance.SHORT_MOVE else np.zeros(2)
 
     def stock(self) -> PlanningStock:
         """Return the stock as the moves so far leave it."""
@@ -183,7 +183,7 @@ class PathBuilder:
             np.array(self._feed[first:]),
         )
         if first:
-            # A later piece begins where the one before ended, which a path can only say by a rapid to that place.
+            # A later piece begins where the one before ended, which a path can only say by a rapid to that position.
             motion[0], feed[0], centre[0] = Motion.RAPID, 0.0, np.nan
         return Toolpath(
             position=position,

@@ -15,8 +15,8 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
-from trunnion.toolpath.stock.heightfield import PlanningStock, places_on
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.toolpath.stock.heightfield import PlanningStock, positions_on
 
 PIECE = 0.5
 """Of the cutter's radius: length of the pieces that a path is looked at in."""
@@ -34,17 +34,21 @@ def eased(
     data: CuttingData,
     stock: PlanningStock,
     slot: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return a path with slower feeds where it removes more than a full slot of the operation's depth would at `slot` times its feed.
 
-    `stock` is what the path is planned on. Blocks are cut where the feed changes; places and marks stay what they are.
+    `stock` is what the path is planned on. Blocks are cut where the feed changes; positions and marks stay what they are.
     """
     return _eased(path, tool, data.feed, stock, slot * tool.diameter * data.depth, progress)
 
 
 def eased_finish(
-    path: Toolpath, tool: Tool, data: CuttingData, stock: PlanningStock, progress: Progress = QUIET
+    path: Toolpath,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return a finishing path as `eased`, where leftovers weigh as much as a slot that the cutter bears."""
     return _eased(path, tool, data.feed, stock, slot_of_finish(tool, data), progress)
@@ -94,9 +98,9 @@ def _in_pieces(path: Toolpath, piece: float) -> tuple[Toolpath, Ints]:
     cuts = (path.motion != Motion.RAPID) & (path.mark != Mark.ENTRY)
     count = np.where(cuts, np.maximum(np.ceil(path.lengths() / piece), 1.0), 1.0).astype(np.int64)
     rows = np.repeat(np.arange(len(path)), count)
-    place = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
-    position = places_on(path, rows, (place + 1) / count[rows])
-    ends = place + 1 == count[rows]
+    step_index = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
+    position = positions_on(path, rows, (step_index + 1) / count[rows])
+    ends = step_index + 1 == count[rows]
     position[ends] = path.position[rows[ends]]
     return replace(
         path,

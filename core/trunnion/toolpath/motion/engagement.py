@@ -38,7 +38,7 @@ def full_width(
 
 
 def top_width(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
-    """Return the whole width of a top that stands free, at the settings' `slot_feed` where that is more than the width of cut."""
+    """Return the whole width of a top that is free, at the settings' `slot_feed` where that is more than the width of cut."""
     if data.widest <= data.width:
         return Engagement(width=data.width, depth=data.depth, share=1.0, at="")
     width = min(data.widest, tool.diameter)

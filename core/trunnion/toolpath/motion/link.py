@@ -1,6 +1,7 @@
 """Links through the air: up as far as what is certainly gone demands, across, down to just above what may be there, then feed.
 
-A rapid changes either the height or the place, never both, and is measured against everything on the spindle: cutter, neck, shank, holder.
+A rapid changes either the height or the position, never both, and is measured against everything on the spindle: cutter, neck, shank,
+holder.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ ASIDE = 1.5
 
 
 def lowest_tip(builder: PathBuilder, start: ArrayLike, end: ArrayLike) -> float:
-    """Return how low the tip may go between two places (2,) without anything touching what may be there; -inf over nothing."""
+    """Return how low the tip may go between two positions (2,) without anything touching what may be there; -inf over nothing."""
     stock, tool = builder.stock(), builder.tool
     lowest = stock.height(start, end, tool.radius)
     for z0, r0, _, r1 in tool.profile():
@@ -37,14 +38,14 @@ def lowest_tip(builder: PathBuilder, start: ArrayLike, end: ArrayLike) -> float:
 
 
 def is_free(builder: PathBuilder, start: ArrayLike, z: float, end: ArrayLike | None = None) -> bool:
-    """Say whether the cutter, fed at height `z` to a place or straight from one to another, meets nothing but the skin of walls."""
+    """Return whether the cutter, fed at height `z` to a position or straight from one to another, meets nothing but the skin of walls."""
     return top_under(builder, start, 0.0, end) <= z + tolerance.COINCIDENT
 
 
 def top_under(
     builder: PathBuilder, start: ArrayLike, radius: float = 0.0, end: ArrayLike | None = None
 ) -> float:
-    """Return the top of the material under the cutter at a place, circling with `radius` there, or on its way to another.
+    """Return the top of the material under the cutter at a position, circling with `radius` there, or on its way to another.
 
     Good for feeds only: the field's cells on the rim, which a wall beside the cutter keeps high, are left out.
     """
@@ -56,17 +57,17 @@ def top_under(
     )
 
 
-def may_plunge(builder: PathBuilder, place: ArrayLike, z: float) -> bool:
-    """Say whether so little material is under the cutter at a place that it may go straight down to height `z`."""
-    return top_under(builder, place) - z <= SKIN
+def may_plunge(builder: PathBuilder, position: ArrayLike, z: float) -> bool:
+    """Return whether so little material is under the cutter at a position that it may go straight down to height `z`."""
+    return top_under(builder, position) - z <= SKIN
 
 
-def travel(builder: PathBuilder, place: ArrayLike, z: float) -> None:
-    """Bring the tip to a place (2,) at height `z`: rapid as far as it is safe, then feed down.
+def travel(builder: PathBuilder, position: ArrayLike, z: float) -> None:
+    """Bring the tip to a position (2,) at height `z`: rapid as far as it is safe, then feed down.
 
     The feed is the plunge feed where material may be in the way.
     """
-    x, y = (float(v) for v in np.asarray(place, dtype=np.float64)[:2])
+    x, y = (float(v) for v in np.asarray(position, dtype=np.float64)[:2])
     below = lowest_tip(builder, (x, y), (x, y))
     near = min(max(below, z) + builder.safety, builder.clearance)
     if builder.here is None:
@@ -95,19 +96,19 @@ def travel(builder: PathBuilder, place: ArrayLike, z: float) -> None:
 
 
 def step_aside(
-    builder: PathBuilder, tangent: ArrayLike, room: AxisRegion, mark: Mark = Mark.LEAD
+    builder: PathBuilder, tangent: ArrayLike, axis_region: AxisRegion, mark: Mark = Mark.LEAD
 ) -> None:
-    """Leave the wall on the right: feed a little to the left of the direction just cut, where there is room."""
+    """Leave the wall on the right: feed a little to the left of the direction just cut, where there is space."""
     if builder.here is None:
         return
     t = np.asarray(tangent, dtype=np.float64)
     left = np.array([-t[1], t[0]])
     for share in (1.0, 0.5):
         to = builder.here[:2] + share * ASIDE * left
-        if room.holds_line(builder.here[:2], to):
+        if axis_region.holds_line(builder.here[:2], to):
             builder.line((to[0], to[1], builder.here[2]), builder.data.feed, mark)
             return
 
 
-def _apart(here: Floats, place: tuple[float, float]) -> bool:
-    return max(abs(here[0] - place[0]), abs(here[1] - place[1])) > tolerance.SHORT_MOVE
+def _apart(here: Floats, position: tuple[float, float]) -> bool:
+    return max(abs(here[0] - position[0]), abs(here[1] - position[1])) > tolerance.SHORT_MOVE

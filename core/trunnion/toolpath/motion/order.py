@@ -17,8 +17,12 @@ def nearest_first(
 
     `away` says how far a thing is from a point (2,).
     """
-    left = list(things)
-    while left:
+    remaining = list(things)
+    while remaining:
         at = here()
-        row = 0 if at is None else min(range(len(left)), key=lambda k: away(left[k], at[:2]))
-        yield left.pop(row)
+        row = (
+            0
+            if at is None
+            else min(range(len(remaining)), key=lambda k: away(remaining[k], at[:2]))
+        )
+        yield remaining.pop(row)

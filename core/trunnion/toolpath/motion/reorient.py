@@ -1,6 +1,6 @@
 """From one direction of the tool to another: rapids that keep the whole tool clear of the work while it turns.
 
-Round everything that stands on the table lies a sphere. A tool whose tip is outside it and that points at its middle is outside with all of
+Round everything that is on the table lies a sphere. A tool whose tip is outside it and that points at its middle is outside with all of
 its body, however wide: it stands behind the plane that touches the sphere at the tip. So the tool goes out along its axis until it is
 behind such a plane, turns round the sphere, and comes in along its new axis.
 """
@@ -20,7 +20,7 @@ from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.setup import Setup
 
 STEP = math.radians(5.0)
-"""Largest turn in one block: the straight ways of the tip between stay outside the sphere because it is taken a thousandth larger."""
+"""Largest turn in one block: the straight paths of the tip between stay outside the sphere because it is taken a thousandth larger."""
 LEAST_SAFE = 1.0
 """mm: how far outside of everything the sphere lies at least, whatever the clearance."""
 Pose = tuple[Floats, Floats]
@@ -28,7 +28,7 @@ Pose = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class SwingSphere:
+class ClearanceSphere:
     """The sphere that a turning tool stays out of: `centre` (3,) and `radius` mm, in the setup frame."""
 
     centre: Floats
@@ -40,7 +40,7 @@ class SwingSphere:
         return np.asarray(tip + max(out, 0.0) * axis)
 
 
-def swing_of(blank: Blank, setup: Setup) -> SwingSphere:
+def clearance_sphere(blank: Blank, setup: Setup) -> ClearanceSphere:
     """Return the sphere round the blank and the fixtures of a setup, as far from them as the clearance height is from the blank."""
     corners = blank.corners(setup.frame)
     safe = max(setup.clearance - float(corners[:, 2].max()), LEAST_SAFE)
@@ -56,10 +56,10 @@ def swing_of(blank: Blank, setup: Setup) -> SwingSphere:
     )
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     radius = float(np.linalg.norm(points - centre, axis=1).max()) + safe
-    return SwingSphere(centre=centre, radius=radius / math.cos(0.5 * STEP))
+    return ClearanceSphere(centre=centre, radius=radius / math.cos(0.5 * STEP))
 
 
-def moved_over(path: Toolpath, before: Pose | None, swing: SwingSphere) -> Toolpath:
+def moved_over(path: Toolpath, before: Pose | None, sphere: ClearanceSphere) -> Toolpath:
     """Return a path with the rapids in front that bring the tool safely to its first pose.
 
     `before` is the pose that the tool was left in, or None when it comes from its change: then it comes in along its axis from outside the
@@ -70,7 +70,7 @@ def moved_over(path: Toolpath, before: Pose | None, swing: SwingSphere) -> Toolp
     tip, axis = path.position[0], path.axis[0]
     upright = float(np.linalg.norm(axis - np.array([0.0, 0.0, 1.0]))) <= tolerance.PARAMETRIC
     if before is None:
-        return path if upright else _led([(swing.above(tip, axis), axis)], path)
+        return path if upright else _led([(sphere.above(tip, axis), axis)], path)
     start, direction = np.asarray(before[0]), np.asarray(before[1])
     if float(np.linalg.norm(axis - direction)) <= tolerance.PARAMETRIC:
         return path
@@ -79,14 +79,15 @@ def moved_over(path: Toolpath, before: Pose | None, swing: SwingSphere) -> Toolp
         # Lower than either end a machine may not lean: over the top instead.
         upright_axis = np.array([0.0, 0.0, 1.0])
         turned = np.vstack([turn(direction, upright_axis), turn(upright_axis, axis)[1:]])
-    around = [(swing.centre + swing.radius * a, a) for a in turned]
+    around = [(sphere.centre + sphere.radius * a, a) for a in turned]
     return _led(
-        [(swing.above(start, direction), direction), *around, (swing.above(tip, axis), axis)], path
+        [(sphere.above(start, direction), direction), *around, (sphere.above(tip, axis), axis)],
+        path,
     )
 
 
 def joined(
-    paths: Sequence[Toolpath], changes: Sequence[bool], swing: SwingSphere
+    paths: Sequence[Toolpath], changes: Sequence[bool], sphere: ClearanceSphere
 ) -> tuple[Toolpath, ...]:
     """Return paths that are cut one after the other, each led from where the one before has left the tool.
 
@@ -95,7 +96,7 @@ def joined(
     led: list[Toolpath] = []
     before: Pose | None = None
     for path, change in zip(paths, changes, strict=True):
-        led.append(moved_over(path, None if change else before, swing))
+        led.append(moved_over(path, None if change else before, sphere))
         if len(path):
             before = (path.position[-1], path.axis[-1])
     return tuple(led)
@@ -114,9 +115,9 @@ def turn(first: Floats, last: Floats) -> Floats:
         )
     angle = math.atan2(float(np.linalg.norm(np.cross(first, last))), float(first @ last))
     share = np.linspace(0.0, angle, max(1, math.ceil(angle / STEP)) + 1)[:, None]
-    way = np.cos(share) * first + np.sin(share) * (across / size)
-    way[-1] = last
-    return np.asarray(way)
+    axes = np.cos(share) * first + np.sin(share) * (across / size)
+    axes[-1] = last
+    return np.asarray(axes)
 
 
 def _led(poses: Sequence[Pose], path: Toolpath) -> Toolpath:

@@ -4,7 +4,7 @@ Along a block the speed follows a trapezoid. Through a joint that turns by an an
 by at most d may go at sqrt(A d s / (1 - s)), s = cos(a / 2) (the circle that touches both blocks and passes d from the joint).
 On an arc the centripetal acceleration bounds the speed.
 
-With rotary axes the blocks are ways of all axes together, and each axis has its own acceleration and rate: a tip that stands while the axis
+With rotary axes the blocks are paths of all axes together, and each axis has its own acceleration and rate: a tip that rests while the axis
 turns takes the time that the slowest axis needs.
 """
 
@@ -31,33 +31,37 @@ NEAR_POLE = 1e-4
 
 
 def machining_time(
-    path: Toolpath, machine: Machine, place: WorkPosition | None = None, gauge: float = 0.0
+    path: Toolpath, machine: Machine, work_position: WorkPosition | None = None, gauge: float = 0.0
 ) -> float:
     """Return the seconds that a machine takes for a path, rapids included, from where its first block ends."""
-    return float(block_times(path, machine, place, gauge).sum())
+    return float(block_times(path, machine, work_position, gauge).sum())
 
 
 def block_times(
-    path: Toolpath, machine: Machine, place: WorkPosition | None = None, gauge: float = 0.0
+    path: Toolpath, machine: Machine, work_position: WorkPosition | None = None, gauge: float = 0.0
 ) -> Floats:
     """Return the seconds (n,) of each block with its dwell; of the first, whose start is unknown, no more than that.
 
-    On a machine with rotary axes `place` says where the work stands and `gauge` mm is the length of the tool from its tip to the spindle's
-    face; raises `Refused` for what the machine can't hold or follow.
+    On a machine with rotary axes `work_position` says where the work stands and `gauge` mm is the length of the tool from its tip to the
+    spindle's face; raises `Refused` for what the machine can't hold or follow.
     """
     times = np.array(path.dwells())
-    way = _way_of(path, place if place is not None and place.machine.rotary else None, gauge)
-    rows = np.flatnonzero(way.length > 0.0)
+    travel = _axis_travel(
+        path,
+        work_position if work_position is not None and work_position.machine.rotary else None,
+        gauge,
+    )
+    rows = np.flatnonzero(travel.length > 0.0)
     if len(rows) == 0:
         return times
-    length, first, last = way.length[rows], way.first[rows], way.last[rows]
+    length, first, last = travel.length[rows], travel.first[rows], travel.last[rows]
     axes = [*(machine.axis(name) for name in "XYZ"), *machine.rotary][: first.shape[1]]
     weight = np.array([1.0, 1.0, 1.0, *_weights(machine)])[: first.shape[1]]
     rate = np.array([a.rapid / SECONDS_PER_MINUTE for a in axes]) * weight
     push = np.array([a.acceleration for a in axes]) * weight
     share = np.maximum(np.abs(first), np.abs(last))
     is_arc = path.motion[rows] >= Motion.ARC_CW
-    share[is_arc, :3] = np.maximum(share[is_arc, :3], way.across[rows[is_arc]])
+    share[is_arc, :3] = np.maximum(share[is_arc, :3], travel.across[rows[is_arc]])
     with np.errstate(divide="ignore"):
         acceleration = (push / share).min(axis=1)
         limit = (rate / share).min(axis=1)
@@ -65,11 +69,11 @@ def block_times(
     feed = np.minimum(path.feed[rows], machine.feed_max) / SECONDS_PER_MINUTE
     # In a block that turns the tip has its feed, however far the machine's axes go for it.
     stretch = np.divide(
-        length, way.tip[rows], out=np.full(len(rows), np.inf), where=way.tip[rows] > 0.0
+        length, travel.tip[rows], out=np.full(len(rows), np.inf), where=travel.tip[rows] > 0.0
     )
     speed = np.where(is_rapid, limit, np.minimum(feed * np.where(is_rapid, 1.0, stretch), limit))
     speed[is_arc] = np.minimum(
-        speed[is_arc], np.sqrt(acceleration[is_arc] * way.radius[rows[is_arc]])
+        speed[is_arc], np.sqrt(acceleration[is_arc] * travel.radius[rows[is_arc]])
     )
     rounding = np.where(
         np.abs(first[:, 3:]).max(axis=1, initial=0.0) > 0.0, ROUNDING_TURNS, ROUNDING
@@ -82,7 +86,7 @@ def block_times(
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class _Way:
+class _AxisTravel:
     """How a machine's axes go along blocks: length (n,) of their common way, of the tip's alone (n,), and the unit directions (n, 3 + a) in
     which they begin and end it. of arcs also across (n, 3), how much of it each linear axis takes, and radius (n,).
 
@@ -96,32 +100,38 @@ class _Way:
     radius: Floats
 
 
-def _way_of(path: Toolpath, place: WorkPosition | None, gauge: float) -> _Way:
-    """Return the way of a path: on a machine with rotary axes that of the positions of all its axes."""
+def _axis_travel(path: Toolpath, work_position: WorkPosition | None, gauge: float) -> _AxisTravel:
+    """Return the travel along a path: on a machine with rotary axes that of the positions of all its axes."""
     tip, sweep = path.lengths(), path.sweeps()
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
     position, axis, centre = path.position, path.axis[arcs], path.centre[arcs]
     turn = np.zeros((len(path), 0))
-    if place is not None:
-        angle = followed(path.axis, place, None, NEAR_POLE, "of the path")
+    if work_position is not None:
+        angle = followed(path.axis, work_position, None, NEAR_POLE, "of the path")
         turn = np.diff(np.degrees(angle), axis=0, prepend=np.degrees(angle[:1])) * _weights(
-            place.machine
+            work_position.machine
         )
-        position, axis = words_of(place, position, angle, gauge), spindle_of(place, angle[arcs])
+        position, axis = (
+            words_of(work_position, position, angle, gauge),
+            spindle_of(work_position, angle[arcs]),
+        )
         centre = words_of(
-            place, np.where(np.isnan(centre), path.position[arcs], centre), angle[arcs], gauge
+            work_position,
+            np.where(np.isnan(centre), path.position[arcs], centre),
+            angle[arcs],
+            gauge,
         )
     start = np.vstack([position[:1], position[:-1]])
-    way = np.column_stack([position - start, turn])
-    first, last = way.copy(), way.copy()
+    travel = np.column_stack([position - start, turn])
+    first, last = travel.copy(), travel.copy()
     for out, point in ((first, start[arcs]), (last, position[arcs])):
         out[arcs, :3] = np.cross(axis, point - centre) * sweep[arcs, None]
     turns = np.abs(turn).max(axis=1, initial=0.0) > 0.0
     across, radius = np.zeros((len(path), 3)), np.zeros(len(path))
     across[arcs] = np.sqrt(np.maximum(1.0 - axis * axis, 0.0))
     radius[arcs] = np.linalg.norm(np.cross(axis, position[arcs] - centre), axis=1)
-    return _Way(
-        length=np.where(turns, np.linalg.norm(way, axis=1), tip),
+    return _AxisTravel(
+        length=np.where(turns, np.linalg.norm(travel, axis=1), tip),
         tip=tip,
         first=_units(first),
         last=_units(last),

@@ -21,7 +21,7 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_free, step_aside, top_under, travel
 from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting.entry import (
-    deepest_place,
+    deepest_position,
     helix,
     helix_radius,
     ramp_along,
@@ -32,9 +32,9 @@ from trunnion.toolpath.offsetting.rings import OffsetRing
 from trunnion.toolpath.offsetting.trimming import PassTrimming
 
 RUN_OUTS = (0.5, 1.0, 2.0, 3.0, 4.0)
-"""Of the radius: how far before an open pass a place that is certainly free is looked for."""
+"""Of the radius: how far before an open pass a position that is certainly free is looked for."""
 
-RUN_OUT_WAYS = (
+RUN_OUT_DIRECTIONS = (
     (-1.0, 0.0),
     (-0.7, 0.7),
     (-0.7, -0.7),
@@ -46,7 +46,7 @@ RUN_OUT_WAYS = (
 """Where it is looked for: along the pass's direction and to its left; straight before the start is best."""
 
 NEXT_PASS = 2.5
-"""Of the step: a place no farther away is on the neighbouring pass and may be fed to straight."""
+"""Of the step: a position no farther away is on the neighbouring pass and may be fed to straight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,30 +62,30 @@ class ClearingParameters:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ClearingLayer:
-    """What is cleared at height `z`: the rings, the `room` that links and entries may use, the `clip` outside which nothing is wanted
-    (None: everything in the rings), and the height `top` under which material may begin (None: as the stock says).
+    """What is cleared at height `z`: the rings, the `axis_region` that links and entries may use, the `clip` outside which nothing is
+    wanted (None: everything in the rings), and the height `top` under which material may begin (None: as the stock says).
 
-    `wanted`: the area whose stock a clipped pass must meet, `worth` how high over `z` it must stand there to count; where a pass meets
+    `wanted`: the area whose stock a clipped pass must meet, `worth` how high over `z` it must be there to count; where a pass meets
     none it is left out (None: every pass is cut as a whole)."""
 
     z: float
     rings: tuple[OffsetRing, ...]
-    room: AxisRegion
+    axis_region: AxisRegion
     clip: Region | None = None
     top: float | None = None
     wanted: Region | None = None
     worth: float = 0.0
 
     def wants(self, points: Floats) -> Floats:
-        """Return how far points (k, 2) are inside the clip and the room, rims counted in (negative outside)."""
-        depth = self.room.depth(points)
+        """Return how far points (k, 2) are inside the clip and the axis region, rims counted in (negative outside)."""
+        depth = self.axis_region.depth(points)
         return (
             depth if self.clip is None else np.minimum(depth, self.clip.signed_distance(points))
         ) + tolerance.ON_REGION
 
 
-def clear(
-    builder: PathBuilder, layer: ClearingLayer, manner: ClearingParameters, progress: Progress
+def clear_area(
+    builder: PathBuilder, layer: ClearingLayer, parameters: ClearingParameters, progress: Progress
 ) -> None:
     """Cut all passes of a layer."""
     trimming = (
@@ -94,7 +94,7 @@ def clear(
         else None
     )
     for ring in nearest_first(layer.rings, lambda: builder.here, _ring_away):
-        _cut_ring(builder, layer, ring, manner, trimming, progress)
+        _cut_ring(builder, layer, ring, parameters, trimming, progress)
     if len(builder):
         _step_off(builder, layer)
 
@@ -103,13 +103,14 @@ def _cut_ring(
     builder: PathBuilder,
     layer: ClearingLayer,
     ring: OffsetRing,
-    manner: ClearingParameters,
+    parameters: ClearingParameters,
     trimming: PassTrimming | None,
     progress: Progress,
 ) -> None:
+    # Depth first: what lies further inside is cut before the ring round it, so each ring begins beside cut material.
     for inner in nearest_first(ring.inner, lambda: builder.here, _ring_away):
-        _cut_ring(builder, layer, inner, manner, trimming, progress)
-    feed = builder.data.feed * (1.0 if ring.inner else manner.slot)
+        _cut_ring(builder, layer, inner, parameters, trimming, progress)
+    feed = builder.data.feed * (1.0 if ring.inner else parameters.slot)
     passes: list[Curve] = []
     for curve in ring.curves():
         passes += [curve] if layer.clip is None else parts_near(curve, layer.clip, layer.wants)
@@ -117,9 +118,9 @@ def _cut_ring(
         progress.check()
         for curve in [whole] if trimming is None else trimming.parts(builder, whole):
             if curve.closed:
-                _cut_closed(builder, layer, ring, curve, manner, feed)
+                _cut_closed(builder, layer, ring, curve, parameters, feed)
             else:
-                _cut_open(builder, layer, curve, manner, feed)
+                _cut_open(builder, layer, curve, parameters, feed)
 
 
 def _cut_closed(
@@ -127,25 +128,26 @@ def _cut_closed(
     layer: ClearingLayer,
     ring: OffsetRing,
     loop: Curve,
-    manner: ClearingParameters,
+    parameters: ClearingParameters,
     feed: float,
 ) -> None:
     here = builder.here
     s = loop.nearest(here[:2]) if here is not None else 0.0
     start, _ = loop.at(s)
-    if not _stays_down(builder, layer, start, manner):
-        free = _free_place(builder, layer, loop, s)
+    # How the tool gets down: it stays down, comes down in the free, feeds across from the ring inside, or enters by `_open_up`.
+    if not _stays_down(builder, layer, start, parameters):
+        free = _free_position(builder, layer, loop, s)
         if free is not None:
             s = free
             travel(builder, loop.at(s)[0], layer.z)
         elif ring.inner:
             s = _from_inner(builder, layer, ring, loop)
         else:
-            s = _open_up(builder, layer, ring, loop, manner)
+            s = _open_up(builder, layer, ring, loop, parameters)
     builder.curve(loop.split(s, s), layer.z, feed)
 
 
-def _free_place(
+def _free_position(
     builder: PathBuilder, layer: ClearingLayer, loop: Curve, first: float
 ) -> float | None:
     count = 8
@@ -161,9 +163,9 @@ def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: OffsetRing, lo
     seeds = [c.points[0] for inner in ring.inner for c in inner.curves()]
     near = min(seeds, key=lambda p: float(loop.distance(p)[0]))
     s = loop.nearest(near)
-    place, _ = loop.at(s)
-    travel(builder, near if layer.room.holds_line(near, place) else place, layer.z)
-    builder.line((*place, layer.z), builder.data.plunge_feed, Mark.LINK)
+    position, _ = loop.at(s)
+    travel(builder, near if layer.axis_region.holds_line(near, position) else position, layer.z)
+    builder.line((*position, layer.z), builder.data.plunge_feed, Mark.LINK)
     return s
 
 
@@ -172,26 +174,26 @@ def _open_up(
     layer: ClearingLayer,
     ring: OffsetRing,
     loop: Curve,
-    manner: ClearingParameters,
+    parameters: ClearingParameters,
 ) -> float:
-    centre, depth = deepest_place(AxisRegion(ring.region), layer.room)
+    centre, depth = deepest_position(AxisRegion(ring.region), layer.axis_region)
     radius = helix_radius(builder, depth)
     s = loop.nearest(centre)
-    place, _ = loop.at(s)
-    if radius > 0.0 and layer.room.holds_line(centre, place):
+    position, _ = loop.at(s)
+    if radius > 0.0 and layer.axis_region.holds_line(centre, position):
         helix(
             builder,
             centre,
             radius,
-            place,
+            position,
             _top(builder, layer, centre, radius),
             layer.z,
-            manner.ramp,
+            parameters.ramp,
         )
-        builder.line((*place, layer.z), builder.data.feed * manner.slot, Mark.LINK)
+        builder.line((*position, layer.z), builder.data.feed * parameters.slot, Mark.LINK)
     else:
         top = max(_top(builder, layer, p, 0.0) for p in loop.points)
-        ramp_round(builder, loop, s, top, layer.z, manner.ramp)
+        ramp_round(builder, loop, s, top, layer.z, parameters.ramp)
     return s
 
 
@@ -199,32 +201,32 @@ def _cut_open(
     builder: PathBuilder,
     layer: ClearingLayer,
     piece: Curve,
-    manner: ClearingParameters,
+    parameters: ClearingParameters,
     feed: float,
 ) -> None:
     start, tangent = piece.start, piece.at(0.0)[1]
     lead = (
-        fitting_lead(start, tangent, manner.lead, layer.room, leaves=False)
-        if manner.lead > 0.0
+        fitting_lead(start, tangent, parameters.lead, layer.axis_region, leaves=False)
+        if parameters.lead > 0.0
         else None
     )
     if lead is not None and _is_off(layer, lead.outside):
         enter(builder, lead, start, layer.z, builder.data.feed)
-    elif not _stays_down(builder, layer, start, manner):
-        _come_to(builder, layer, piece, manner)
+    elif not _stays_down(builder, layer, start, parameters):
+        _come_to(builder, layer, piece, parameters)
     builder.curve(piece, layer.z, feed)
-    if manner.lead > 0.0:
+    if parameters.lead > 0.0:
         last = piece.at(piece.length)
         leave(
             builder,
-            fitting_lead(last[0], last[1], manner.lead, layer.room, leaves=True),
+            fitting_lead(last[0], last[1], parameters.lead, layer.axis_region, leaves=True),
             layer.z,
             builder.data.feed,
         )
 
 
 def _come_to(
-    builder: PathBuilder, layer: ClearingLayer, piece: Curve, manner: ClearingParameters
+    builder: PathBuilder, layer: ClearingLayer, piece: Curve, parameters: ClearingParameters
 ) -> None:
     """Bring the cutter to the start of an open pass: from outside where it is free, else by helix beside it, else by a ramp along it."""
     start, tangent = piece.start, piece.at(0.0)[1]
@@ -233,15 +235,15 @@ def _come_to(
         return
     left = np.array([-tangent[1], tangent[0]])
     for share in RUN_OUTS:
-        for along, aside in RUN_OUT_WAYS:
+        for along, aside in RUN_OUT_DIRECTIONS:
             before = start + share * builder.tool.radius * (along * tangent + aside * left)
-            if is_free(builder, before, layer.z) and layer.room.holds_line(before, start):
+            if is_free(builder, before, layer.z) and layer.axis_region.holds_line(before, start):
                 travel(builder, before, layer.z)
                 builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
                 return
     radius = helix_radius(builder, builder.tool.radius)
     centre = start + radius * left
-    if radius > 0.0 and float(layer.room.depth(centre)[0]) >= radius - tolerance.ON_REGION:
+    if radius > 0.0 and float(layer.axis_region.depth(centre)[0]) >= radius - tolerance.ON_REGION:
         helix(
             builder,
             centre,
@@ -249,25 +251,26 @@ def _come_to(
             start,
             _top(builder, layer, centre, radius),
             layer.z,
-            manner.ramp,
+            parameters.ramp,
         )
         return
     top = max(_top(builder, layer, p, 0.0) for p in piece.points)
-    ramp_along(builder, piece, top, layer.z, manner.ramp)
+    ramp_along(builder, piece, top, layer.z, parameters.ramp)
 
 
 def _stays_down(
-    builder: PathBuilder, layer: ClearingLayer, start: Floats, manner: ClearingParameters
+    builder: PathBuilder, layer: ClearingLayer, start: Floats, parameters: ClearingParameters
 ) -> bool:
-    """Feed straight to a place when the tool is down, the way stays in the room, and it is short or certainly free; say whether."""
+    """Feed straight to a position when the tool is down, the path stays in the axis region, and it is short or certainly free; say
+    whether."""
     here = builder.here
     if (
         here is None
         or abs(here[2] - layer.z) > tolerance.SHORT_MOVE
-        or not layer.room.holds_line(here, start)
+        or not layer.axis_region.holds_line(here, start)
     ):
         return False
-    if float(np.hypot(*(start - here[:2]))) > NEXT_PASS * manner.step and not is_free(
+    if float(np.hypot(*(start - here[:2]))) > NEXT_PASS * parameters.step and not is_free(
         builder, here, layer.z, start
     ):
         return False
@@ -275,23 +278,25 @@ def _stays_down(
     return True
 
 
-def _top(builder: PathBuilder, layer: ClearingLayer, place: Floats, radius: float) -> float:
-    found = top_under(builder, place, radius)
+def _top(builder: PathBuilder, layer: ClearingLayer, position: Floats, radius: float) -> float:
+    found = top_under(builder, position, radius)
     return max(found if layer.top is None else min(found, layer.top), layer.z)
 
 
-def _is_off(layer: ClearingLayer, place: Floats) -> bool:
-    return layer.clip is None or float(layer.clip.signed_distance(place)[0]) <= tolerance.ON_REGION
+def _is_off(layer: ClearingLayer, position: Floats) -> bool:
+    return (
+        layer.clip is None or float(layer.clip.signed_distance(position)[0]) <= tolerance.ON_REGION
+    )
 
 
 def _step_off(builder: PathBuilder, layer: ClearingLayer) -> None:
     if builder.here is None or abs(builder.here[2] - layer.z) > tolerance.SHORT_MOVE:
         return
-    step_aside(builder, builder.heading(), layer.room)
+    step_aside(builder, builder.heading(), layer.axis_region)
 
 
-def _ring_away(ring: OffsetRing, place: Floats) -> float:
-    return _nearest([_innermost(ring).region], place)
+def _ring_away(ring: OffsetRing, position: Floats) -> float:
+    return _nearest([_innermost(ring).region], position)
 
 
 def _innermost(ring: OffsetRing) -> OffsetRing:
@@ -300,11 +305,13 @@ def _innermost(ring: OffsetRing) -> OffsetRing:
     return ring
 
 
-def _nearest(regions: Sequence[Region], place: Floats) -> float:
-    return min(abs(float(r.signed_distance(place)[0])) for r in regions)
+def _nearest(regions: Sequence[Region], position: Floats) -> float:
+    return min(abs(float(r.signed_distance(position)[0])) for r in regions)
 
 
-def _curve_away(curve: Curve, place: Floats) -> float:
+def _curve_away(curve: Curve, position: Floats) -> float:
     return (
-        float(curve.distance(place)[0]) if curve.closed else float(np.hypot(*(curve.start - place)))
+        float(curve.distance(position)[0])
+        if curve.closed
+        else float(np.hypot(*(curve.start - position)))
     )

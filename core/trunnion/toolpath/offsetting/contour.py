@@ -1,4 +1,4 @@
-"""Passes along walls: the rim of the room of the axis where a guide line made it, with leads, and straight on past open ends."""
+"""Passes along walls: the rim of the axis region where a guide line made it, with leads, and straight on past open ends."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from trunnion.toolpath.offsetting.entry import ramp_along, ramp_round
 from trunnion.toolpath.offsetting.lead import cut_closed, enter, fitting_lead, from_free, leave
 
 PAST = (1.2, 0.6, 0.3)
-"""Of the cutter's radius: how far past its end an open wall is followed, as far as there is room."""
+"""Of the cutter's radius: how far past its end an open wall is followed, as far as there is space."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,79 +32,86 @@ class ContourApproach:
     rounds: int = 1
 
 
-def contour_parts(room: AxisRegion, guide: Curve, distance: float) -> list[Curve]:
-    """Return the parts of the room's rim that lie `distance` from a guide line, the room on their left."""
+def contour_parts(axis_region: AxisRegion, guide: Curve, distance: float) -> list[Curve]:
+    """Return the parts of the axis region's rim that lie `distance` from a guide line, the axis region on their left."""
     found: list[Curve] = []
-    for rim in room.region.curves():
+    for rim in axis_region.region.curves():
         found += parts_where(
             rim,
             lambda p: np.minimum(
-                distance + tolerance.ON_REGION - guide.distance(p), _beside(guide, p, distance)
+                distance + tolerance.ON_REGION - guide.distance(p), _past_ends(guide, p, distance)
             ),
         )
     return found
 
 
-def _beside(guide: Curve, points: Floats, distance: float) -> Floats:
+def _past_ends(guide: Curve, points: Floats, distance: float) -> Floats:
     """Return how far points (k, 2) are from the half discs past a guide line's open ends (negative inside): there a pass goes straight on
     instead of round the end."""
     if guide.closed:
         return np.full(len(points), np.inf)
-    (first, heading), (last, leaving) = guide.at(0.0), guide.at(guide.length)
+    (first, heading), (last, last_heading) = guide.at(0.0), guide.at(guide.length)
     beyond = [
         np.where(
             np.linalg.norm(points - end, axis=1) <= distance + tolerance.SEW,
-            (points - end) @ way,
+            (points - end) @ direction,
             -np.inf,
         )
-        for end, way in ((first, -heading), (last, leaving))
+        for end, direction in ((first, -heading), (last, last_heading))
     ]
     # Ends a little before the half discs, so that the last direction is the wall's and not that of the arc round its end.
     return -tolerance.ON_REGION - np.maximum(*beyond)
 
 
-def length_out_of_reach(room: AxisRegion, guide: Curve, distance: float) -> float:
-    """Return how much of a guide line in mm an axis in the room can't come within `distance` of."""
+def length_out_of_reach(axis_region: AxisRegion, guide: Curve, distance: float) -> float:
+    """Return how much of a guide line in mm an axis in the axis region can't come within `distance` of."""
     s, points = points_along(guide)
     spans = np.diff(np.append(s, guide.length))
     if len(spans) < len(points):
         spans = np.append(spans, 0.0)
-    missed = -room.depth(points) > distance + tolerance.SEW
+    missed = -axis_region.depth(points) > distance + tolerance.SEW
     return float(spans[missed].sum())
 
 
 def cut_parts(
-    builder: PathBuilder, parts: list[Curve], z: float, room: AxisRegion, approach: ContourApproach
+    builder: PathBuilder,
+    parts: list[Curve],
+    z: float,
+    axis_region: AxisRegion,
+    approach: ContourApproach,
 ) -> None:
     """Cut contours at height `z`, the nearest next."""
     for part in nearest_first(parts, lambda: builder.here, _away):
         if part.closed:
-            _cut_loop(builder, part, z, room, approach)
+            _cut_loop(builder, part, z, axis_region, approach)
         else:
             for _ in range(approach.rounds):
-                cut_open(builder, part, z, room, approach)
+                cut_open(builder, part, z, axis_region, approach)
 
 
 def cut_open(
     builder: PathBuilder,
     part: Curve,
     z: float,
-    room: AxisRegion,
+    axis_region: AxisRegion,
     approach: ContourApproach,
     *,
     past: bool = True,
 ) -> None:
-    """Cut an open contour, followed straight on past both ends as far as there is room when `past`, with leads."""
+    """Cut an open contour, followed straight on past both ends as far as there is space when `past`, with leads."""
     feed = builder.data.feed
-    (first, heading), (last, leaving) = part.at(0.0), part.at(part.length)
+    (first, heading), (last, last_heading) = part.at(0.0), part.at(part.length)
     begin, end = (
-        (_past(builder, first, -heading, room), _past(builder, last, leaving, room))
+        (
+            _past(builder, first, -heading, axis_region),
+            _past(builder, last, last_heading, axis_region),
+        )
         if past
         else (first, last)
     )
-    lead, free = fitting_lead(begin, heading, approach.radius, room, leaves=False), False
+    lead, free = fitting_lead(begin, heading, approach.radius, axis_region, leaves=False), False
     if lead is not None:
-        lead, free = from_free(builder, lead, heading, z, room)
+        lead, free = from_free(builder, lead, heading, z, axis_region)
     if lead is not None and (free or may_plunge(builder, lead.before, z)):
         enter(builder, lead, begin, z, feed)
     else:
@@ -112,21 +119,21 @@ def cut_open(
     builder.line((*first, z), feed)
     builder.curve(part, z, feed)
     builder.line((*end, z), feed)
-    off = fitting_lead(end, leaving, approach.radius, room, leaves=True)
+    off = fitting_lead(end, last_heading, approach.radius, axis_region, leaves=True)
     leave(builder, off, z, feed)
     if off is None:
-        step_aside(builder, leaving, room)
+        step_aside(builder, last_heading, axis_region)
 
 
 def _cut_loop(
-    builder: PathBuilder, loop: Curve, z: float, room: AxisRegion, approach: ContourApproach
+    builder: PathBuilder, loop: Curve, z: float, axis_region: AxisRegion, approach: ContourApproach
 ) -> None:
     feed = builder.data.feed
     if cut_closed(
         builder,
         loop,
         z,
-        room,
+        axis_region,
         feed,
         radius=approach.radius,
         overlap=approach.overlap,
@@ -139,16 +146,16 @@ def _cut_loop(
     opened = loop.split(0.0, 0.0)
     for _ in range(approach.rounds):
         builder.curve(opened, z, feed)
-    step_aside(builder, loop.at(0.0)[1], room)
+    step_aside(builder, loop.at(0.0)[1], axis_region)
 
 
-def _past(builder: PathBuilder, end: Floats, way: Floats, room: AxisRegion) -> Floats:
+def _past(builder: PathBuilder, end: Floats, direction: Floats, axis_region: AxisRegion) -> Floats:
     for share in PAST:
-        past = end + share * builder.tool.radius * way
-        if room.holds_line(end, past):
+        past = end + share * builder.tool.radius * direction
+        if axis_region.holds_line(end, past):
             return past
     return end
 
 
-def _away(curve: Curve, place: Floats) -> float:
-    return float(curve.distance(place)[0]) if curve.closed else math.dist(curve.start, place)
+def _away(curve: Curve, position: Floats) -> float:
+    return float(curve.distance(position)[0]) if curve.closed else math.dist(curve.start, position)

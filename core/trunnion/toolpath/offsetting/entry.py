@@ -24,11 +24,11 @@ GAP = 0.3
 """mm above the material where the helix or ramp begins."""
 
 GRID = 24
-"""Places along each side of a box that are tried for the deepest place of a room."""
+"""Positions along each side of a box that are tried for the deepest position of an axis region."""
 
 
-def deepest_place(area: AxisRegion, room: AxisRegion) -> tuple[Floats, float]:
-    """Return the place (2,) in `area` that is deepest inside `room`, and how deep it is there."""
+def deepest_position(area: AxisRegion, axis_region: AxisRegion) -> tuple[Floats, float]:
+    """Return the position (2,) in `area` that is deepest inside `axis_region`, and how deep it is there."""
     low, high = area.region.box()
     best, depth = 0.5 * (low + high), -math.inf
     for _ in range(2):
@@ -36,7 +36,7 @@ def deepest_place(area: AxisRegion, room: AxisRegion) -> tuple[Floats, float]:
             np.linspace(low[0], high[0], GRID), np.linspace(low[1], high[1], GRID), indexing="ij"
         )
         points = np.stack([x.ravel(), y.ravel()], axis=1)
-        found = np.where(area.depth(points) >= 0.0, room.depth(points), -math.inf)
+        found = np.where(area.depth(points) >= 0.0, axis_region.depth(points), -math.inf)
         row = int(np.argmax(found))
         if found[row] > depth:
             best, depth = points[row], float(found[row])
@@ -46,7 +46,7 @@ def deepest_place(area: AxisRegion, room: AxisRegion) -> tuple[Floats, float]:
 
 
 def helix_radius(builder: PathBuilder, depth: float) -> float:
-    """Return the radius of the helix that fits where the room is `depth` deep, or 0 when none does."""
+    """Return the radius of the helix that fits where the axis region is `depth` deep, or 0 when none does."""
     tool = builder.tool
     flat = tool.radius - tool.corner_radius
     widest = min(2.0 * WIDEST_HELIX * max(flat, 0.5 * tool.radius), 0.98 * depth)
@@ -63,8 +63,8 @@ def helix(
     angle: float,
 ) -> None:
     """Go down anticlockwise round `centre` from just above `top` to `z` and once round there, ending on the side of `towards` (2,)."""
-    way = towards - centre
-    first = math.atan2(way[1], way[0])
+    direction = towards - centre
+    first = math.atan2(direction[1], direction[0])
     begin = top + GAP
     turns = max(
         1, math.ceil((begin - z) / (math.tau * radius * math.tan(angle)) - tolerance.COINCIDENT)
@@ -86,7 +86,7 @@ def helix(
 def ramp_round(
     builder: PathBuilder, loop: Curve, s: float, top: float, z: float, angle: float
 ) -> None:
-    """Go down along a closed contour from its place `s`, round and round until `z`, ending where it began."""
+    """Go down along a closed contour from its position `s`, round and round until `z`, ending where it began."""
     opened = loop.split(s, s)
     begin = top + GAP
     rounds = max(

@@ -16,14 +16,14 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_free, may_plunge, travel
 
 SHARES = (1.0, 0.6, 0.35, 0.2)
-"""Shares of the wished radius that are tried one after the other where there is little room."""
+"""Shares of the wanted radius that are tried one after the other where there is little space."""
 
 RUN_INS = (0.0, 0.5, 1.0, 2.0, 3.0, 4.0)
 """Of the cutter's radius: straights before the arc that are tried until one begins off the material."""
 
 QUARTER = 0.5 * math.pi
 STARTS = 12
-"""Places of a closed contour that are tried as its start."""
+"""Positions of a closed contour that are tried as its start."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,23 +41,23 @@ class Lead:
 
 def lead_in(point: Floats, tangent: Floats, radius: float) -> Lead:
     """Return the quarter arc that ends at a point of a contour in its direction, anticlockwise from the left."""
-    centre = point + radius * _left(tangent)
+    centre = point + radius * _left_normal(tangent)
     return Lead(centre - radius * tangent, centre, radius, centre - radius * tangent)
 
 
 def lead_out(point: Floats, tangent: Floats, radius: float) -> Lead:
     """Return the quarter arc that begins at a point of a contour in its direction and leaves to the left."""
-    centre = point + radius * _left(tangent)
+    centre = point + radius * _left_normal(tangent)
     return Lead(centre + radius * tangent, centre, radius, centre + radius * tangent)
 
 
 def fitting_lead(
-    point: Floats, tangent: Floats, radius: float, room: AxisRegion, *, leaves: bool
+    point: Floats, tangent: Floats, radius: float, axis_region: AxisRegion, *, leaves: bool
 ) -> Lead | None:
-    """Return the largest lead up to `radius` that stays in the room, or None."""
+    """Return the largest lead up to `radius` that stays in the axis region, or None."""
     for share in SHARES:
         lead = (lead_out if leaves else lead_in)(point, tangent, share * radius)
-        if room.holds(_arc_points(lead, point)):
+        if axis_region.holds(_arc_points(lead, point)):
             return lead
     return None
 
@@ -66,7 +66,7 @@ def cut_closed(
     builder: PathBuilder,
     loop: Curve,
     z: float,
-    room: AxisRegion,
+    axis_region: AxisRegion,
     feed: float,
     *,
     radius: float,
@@ -75,10 +75,10 @@ def cut_closed(
 ) -> bool:
     """Cut a closed contour from its best start, with a lead in, `rounds` times round, an overlap and a lead out.
 
-    The best start has room for the largest lead, in a place that is certainly free, in the middle of a long straight. Say whether
-    a lead was found that begins in the room and in no full material; nothing is cut otherwise.
+    The best start has space for the largest lead, in a position that is certainly free, in the middle of a long straight. Return whether
+    a lead was found that begins in the axis region and in no full material; nothing is cut otherwise.
     """
-    start = _best_start(builder, loop, z, room, radius)
+    start = _best_start(builder, loop, z, axis_region, radius)
     if start is None:
         return False
     s, lead = start
@@ -92,7 +92,7 @@ def cut_closed(
         over = loop.split(s, s + min(overlap, 0.5 * loop.length))
         builder.curve(over, z, feed)
         last, tangent = loop.at(s + over.length)
-    leave(builder, fitting_lead(last, tangent, lead.radius, room, leaves=True), z, feed)
+    leave(builder, fitting_lead(last, tangent, lead.radius, axis_region, leaves=True), z, feed)
     return True
 
 
@@ -104,12 +104,12 @@ def enter(builder: PathBuilder, lead: Lead, point: Floats, z: float, feed: float
 
 
 def leave(builder: PathBuilder, lead: Lead | None, z: float, feed: float) -> None:
-    """Follow a lead off the contour, when there is room for one."""
+    """Follow a lead off the contour, when there is space for one."""
     if lead is not None:
         builder.arc((*lead.outside, z), lead.centre, QUARTER, feed, Mark.LEAD)
 
 
-def start_places(loop: Curve) -> list[float]:
+def start_positions(loop: Curve) -> list[float]:
     """Return arc lengths where a closed contour may be begun: the middles of its longest lines and arcs, straight ones first."""
     seg = loop.segments()
     before = np.cumsum(seg.length) - seg.length
@@ -119,26 +119,26 @@ def start_places(loop: Curve) -> list[float]:
 
 
 def from_free(
-    builder: PathBuilder, lead: Lead, tangent: Floats, z: float, room: AxisRegion
+    builder: PathBuilder, lead: Lead, tangent: Floats, z: float, axis_region: AxisRegion
 ) -> tuple[Lead, bool]:
-    """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and say whether it does."""
+    """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and whether it does."""
     for share in RUN_INS:
-        before = lead.outside + share * builder.tool.radius * _left(tangent)
-        if is_free(builder, before, z) and room.holds_line(before, lead.outside):
+        before = lead.outside + share * builder.tool.radius * _left_normal(tangent)
+        if is_free(builder, before, z) and axis_region.holds_line(before, lead.outside):
             return replace(lead, before=before), True
     return lead, False
 
 
 def _best_start(
-    builder: PathBuilder, loop: Curve, z: float, room: AxisRegion, radius: float
+    builder: PathBuilder, loop: Curve, z: float, axis_region: AxisRegion, radius: float
 ) -> tuple[float, Lead] | None:
     best: tuple[tuple[bool, float], float, Lead] | None = None
-    for s in start_places(loop):
+    for s in start_positions(loop):
         point, tangent = loop.at(s)
-        found = fitting_lead(point, tangent, radius, room, leaves=False)
+        found = fitting_lead(point, tangent, radius, axis_region, leaves=False)
         if found is None:
             continue
-        lead, free = from_free(builder, found, tangent, z, room)
+        lead, free = from_free(builder, found, tangent, z, axis_region)
         if not free and not may_plunge(builder, lead.before, z):
             continue
         worth = (free, lead.radius)
@@ -155,5 +155,5 @@ def _arc_points(lead: Lead, point: Floats) -> Floats:
     return lead.centre + np.cos(share)[:, None] * a + np.sin(share)[:, None] * b
 
 
-def _left(tangent: Floats) -> Floats:
+def _left_normal(tangent: Floats) -> Floats:
     return np.array([-tangent[1], tangent[0]])

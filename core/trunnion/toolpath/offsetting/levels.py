@@ -31,7 +31,7 @@ def fillet_steps(fillet: float, corner_radius: float, scallop: float) -> tuple[f
     """Return the heights above the floor, downwards and ending with 0, at which a cutter whose corner radius is smaller than the fillet
     leaves cusps of at most `scallop` on it (none above 0 when the corner is as large as the fillet).
 
-    The centre of the cutter's corner goes along an arc of radius fillet - corner_radius; two places on it an angle a apart leave a cusp
+    The centre of the cutter's corner goes along an arc of radius fillet - corner_radius; two positions on it an angle a apart leave a cusp
     fillet - g cos(a / 2) - sqrt(rc^2 - g^2 sin^2(a / 2)) high, g that radius. A sharp corner leaves steps half as high as they are wide.
     """
     gap = fillet - corner_radius

@@ -18,9 +18,9 @@ FAR = 10_000.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClearingPasses:
-    """The room of the axis, its rings, and the clip of an open area (None: closed all round)."""
+    """The axis region, its rings, and the clip of an open area (None: closed all round)."""
 
-    room: AxisRegion
+    axis_region: AxisRegion
     rings: tuple[OffsetRing, ...]
     clip: Region | None
 
@@ -36,21 +36,21 @@ def passes_over(
 ) -> ClearingPasses:
     """Return the passes of a cutter whose axis keeps `distance` from the boundary's rim; none when it fits nowhere.
 
-    `mitred`: the walls have a fillet at their foot, which `Room.of` must keep whole at sharp edges.
+    `mitred`: the walls have a fillet at their foot, which `AxisRegion.of` must keep whole at sharp edges.
     """
     closed = not boundary.minus(wanted.offset(OPEN_MARGIN))
-    room = AxisRegion.of(boundary, distance, mitred=mitred and closed)
-    if not room.region or not wanted:
-        return ClearingPasses(room, (), None)
+    axis_region = AxisRegion.of(boundary, distance, mitred=mitred and closed)
+    if not axis_region.region or not wanted:
+        return ClearingPasses(axis_region, (), None)
     if closed:
-        return ClearingPasses(room, ring_tree(room.region, step), None)
+        return ClearingPasses(axis_region, ring_tree(axis_region.region, step), None)
     clip = wanted.offset(tool.radius + OVERRUN)
     near = clip.offset(distance + OVERRUN)
     walls = near.minus(boundary)
     if not walls:
-        return ClearingPasses(room, ring_tree(room.region, step, clip), clip)
+        return ClearingPasses(axis_region, ring_tree(axis_region.region, step, clip), clip)
     low, high = near.box()
     everywhere = Region.rectangle(low[0] - FAR, low[1] - FAR, high[0] + FAR, high[1] + FAR)
     return ClearingPasses(
-        room, ring_tree(everywhere.minus(walls.offset(distance)), step, clip), clip
+        axis_region, ring_tree(everywhere.minus(walls.offset(distance)), step, clip), clip
     )

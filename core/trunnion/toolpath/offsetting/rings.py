@@ -1,6 +1,6 @@
-"""Contour-parallel passes: nested offsets of the room of the axis, as a tree from the rim inwards.
+"""Contour-parallel passes: nested offsets of the axis region, as a tree from the rim inwards.
 
-No post stays between or inside the passes as long as the step is at most the radius of the cutter's flat end: a place between two
+No post stays between or inside the passes as long as the step is at most the radius of the cutter's flat end: a position between two
 neighbouring offsets is nearer than one step to the outer one, and the innermost offset is nowhere deeper than one step. With a rounded
 end a longer step leaves ridges as high as the end has risen there.
 """
@@ -21,18 +21,18 @@ SAFE_SHARE = 0.95
 """Of the flat end's radius: the widest step; the rest is for the machine."""
 
 CLIP_SPACING = 2.0
-"""mm between the places of a clip's rim that decide whether a ring can touch it."""
+"""mm between the positions of a clip's rim that decide whether a ring can touch it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OffsetRing:
-    """One piece of an offset of the room: its rim is a pass, `inner` are the pieces one step further inside."""
+    """One piece of an offset of the axis region: its rim is a pass, `inner` are the pieces one step further inside."""
 
     region: Region
     inner: tuple[OffsetRing, ...]
 
     def curves(self) -> tuple[Curve, ...]:
-        """Return the loops of the rim, the room on the left of each."""
+        """Return the loops of the rim, the axis region on the left of each."""
         return self.region.curves()
 
 
@@ -43,14 +43,14 @@ def safe_step(tool: Tool, width: float, ridge: float = 0.0) -> float:
     return min(width, SAFE_SHARE * max(tool.radius - corner + at_ridge, 0.5 * tool.radius))
 
 
-def ring_tree(room: Region, step: float, clip: Region | None = None) -> tuple[OffsetRing, ...]:
-    """Return the rings of a room, a step apart; with a clip, only those that can touch it."""
+def ring_tree(region: Region, step: float, clip: Region | None = None) -> tuple[OffsetRing, ...]:
+    """Return the rings of an axis region, a step apart; with a clip, only those that can touch it."""
     rim = (
         None
         if clip is None
         else _Clip(clip, tuple(points_along(c, CLIP_SPACING)[1] for c in clip.curves()))
     )
-    return tuple(_ring(piece, step, rim) for piece in room.split() if _touches(piece, rim))
+    return tuple(_ring(piece, step, rim) for piece in region.split() if _overlaps(piece, rim))
 
 
 def depth_first(rings: tuple[OffsetRing, ...]) -> Iterator[OffsetRing]:
@@ -70,11 +70,11 @@ class _Clip:
 
 def _ring(piece: Region, step: float, clip: _Clip | None) -> OffsetRing:
     inside = piece.offset(-step).split()
-    return OffsetRing(piece, tuple(_ring(p, step, clip) for p in inside if _touches(p, clip)))
+    return OffsetRing(piece, tuple(_ring(p, step, clip) for p in inside if _overlaps(p, clip)))
 
 
-def _touches(piece: Region, clip: _Clip | None) -> bool:
-    """Say whether a piece has some of a clip's rim in it or lies inside the clip, as a closed space beside open ones does."""
+def _overlaps(piece: Region, clip: _Clip | None) -> bool:
+    """Return whether a piece has some of a clip's rim in it or lies inside the clip, as a closed space beside open ones does."""
     return (
         clip is None
         or any(bool(piece.contains(p).any()) for p in clip.rim)

@@ -1,4 +1,4 @@
-"""Trims passes to where stock stands before the cutter: what is left out of a pass would be air.
+"""Trims passes to where stock is before the cutter: what is left out of a pass would be air.
 
 A pass engages where the front half of the cutter's rim, seen along the feed, touches material: what lies behind that half the pass itself
 has cut already. So a pass begins a radius before the material, and ends where the front has run out of it.
@@ -19,7 +19,7 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import SECONDS_PER_MINUTE
 
 MARGIN = 1.0
-"""mm that a pass begins before and ends after the places where it engages."""
+"""mm that a pass begins before and ends after the positions where it engages."""
 
 LINK = 0.4
 """s that a lift, a short rapid and a descent take, most of it in the ramps of the axes: gaps that are fed through in less stay."""
@@ -27,18 +27,18 @@ LINK = 0.4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PassTrimming:
-    """Trims the passes of one layer: the cells (nx, ny) of the stock that are to go, and the height over which what stands counts."""
+    """Trims the passes of one layer: the cells (nx, ny) of the stock that are to go, and the height over which what is counts."""
 
     wanted: Bools
     z: float
 
     @staticmethod
     def of(builder: PathBuilder, area: Region, z: float) -> PassTrimming:
-        """Return the trimming of a layer for the stock in an area that stands higher than `z` before its first pass."""
+        """Return the trimming of a layer for the stock in an area that is higher than `z` before its first pass."""
         return PassTrimming(builder.stock().cells_above(z, area), z)
 
     def parts(self, builder: PathBuilder, curve: Curve) -> list[Curve]:
-        """Return the parts of a pass on which the stock, as the path so far leaves it, stands before the cutter; the curve itself when
+        """Return the parts of a pass on which the stock, as the path so far leaves it, is before the cutter; the curve itself when
         that is everywhere or all gaps are short."""
         stock, tool = builder.stock(), builder.tool
         s, points = points_along(curve, stock.cell)
@@ -55,7 +55,7 @@ class PassTrimming:
         return _parts(curve, s, engaged, curve.length, MARGIN + stock.cell, gap)
 
     def _meets(self, stock: PlanningStock, points: Floats, along: Floats, radius: float) -> Bools:
-        """Return for places (k, 2) of a cutter with directions (k, 2) whether stock lies under the front half of its rim."""
+        """Return for positions (k, 2) of a cutter with directions (k, 2) whether stock lies under the front half of its rim."""
         count = max(2, int(np.ceil(np.pi * radius / stock.cell)))
         angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, count + 1)
         left = np.stack([-along[:, 1], along[:, 0]], axis=1)

@@ -42,7 +42,7 @@ OVERRUN = 1.0
 WORTH = 0.1
 """mm: stock of a rest that stands no higher over a pass is not worth it."""
 
-TOUCH = 0.02
+ENGAGED = 0.02
 """mm: a pass that would enter a rest by less is not made."""
 
 
@@ -91,32 +91,34 @@ def corner(
         above = heights[-1].z if heights else above
         rests = _rests(drive, level).split()
         near = _reaching(rests, tool)
-        rooms: dict[float, tuple[AxisRegion, tuple[Curve, ...]]] = {}
+        axis_regions: dict[float, tuple[AxisRegion, tuple[Curve, ...]]] = {}
         for rest in nearest_first(
             rests, lambda: builder.here, lambda r, p: abs(float(r.signed_distance(p)[0]))
         ):
-            beside: dict[float, list[Curve]] = {}
+            corner_passes: dict[float, list[Curve]] = {}
             for height in heights:
                 progress.check()
-                if height.distance not in rooms:
-                    rooms[height.distance] = _passes(
+                if height.distance not in axis_regions:
+                    axis_regions[height.distance] = _passes(
                         level, height.distance, step, near, mitred=drive.fillet > 0.0
                     )
-                room, rims = rooms[height.distance]
-                if height.distance not in beside:
-                    beside[height.distance] = list(_beside(rims, rest, tool))
-                for part in _standing(builder, beside[height.distance], rest, height.z, drive):
+                axis_region, rims = axis_regions[height.distance]
+                if height.distance not in corner_passes:
+                    corner_passes[height.distance] = list(_corner_passes(rims, rest, tool))
+                for part in _over_stock(
+                    builder, corner_passes[height.distance], rest, height.z, drive
+                ):
                     if part.closed:
-                        cut_parts(builder, [part], height.z, room, approach)
+                        cut_parts(builder, [part], height.z, axis_region, approach)
                     else:
-                        cut_open(builder, part, height.z, room, approach, past=False)
-        findings += _left(drive, level, tool, rests)
+                        cut_open(builder, part, height.z, axis_region, approach, past=False)
+        findings += _remaining_findings(drive, level, tool, rests)
     return Planned(
         path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings)
     )
 
 
-def _standing(
+def _over_stock(
     builder: PathBuilder, passes: list[Curve], rest: Region, z: float, drive: PlaneDrive
 ) -> Iterator[Curve]:
     """Yield the parts of passes beside a rest at a height where its stock stands before the cutter; finishing passes whole, for what they
@@ -180,18 +182,18 @@ def _reaching(rests: tuple[Region, ...], tool: Tool) -> Region:
 def _passes(
     level: DriveLevel, distance: float, step: float, near: Region, *, mitred: bool
 ) -> tuple[AxisRegion, tuple[Curve, ...]]:
-    """Return the room and the rims of its rings that come near a rest, the innermost first."""
-    room = AxisRegion.of(level.boundary, distance, mitred=mitred and is_closed(level))
-    if not room.region:
-        return room, ()
-    return room, tuple(
-        c for ring in depth_first(ring_tree(room.region, step, near)) for c in ring.curves()
+    """Return the axis region and the rims of its rings that come near a rest, the innermost first."""
+    axis_region = AxisRegion.of(level.boundary, distance, mitred=mitred and is_closed(level))
+    if not axis_region.region:
+        return axis_region, ()
+    return axis_region, tuple(
+        c for ring in depth_first(ring_tree(axis_region.region, step, near)) for c in ring.curves()
     )
 
 
-def _beside(rims: tuple[Curve, ...], rest: Region, tool: Tool) -> Iterator[Curve]:
+def _corner_passes(rims: tuple[Curve, ...], rest: Region, tool: Tool) -> Iterator[Curve]:
     """Yield the parts of the passes beside one rest that cut into it."""
-    around, inside = tool.radius + OVERRUN, tool.radius - TOUCH
+    around, inside = tool.radius + OVERRUN, tool.radius - ENGAGED
     low, high = rest.box()
     for rim in rims:
         first, last = rim.box()
@@ -202,15 +204,15 @@ def _beside(rims: tuple[Curve, ...], rest: Region, tool: Tool) -> Iterator[Curve
                 yield part
 
 
-def _left(
+def _remaining_findings(
     drive: PlaneDrive, level: DriveLevel, tool: Tool, rests: tuple[Region, ...]
 ) -> list[Finding]:
     if not rests:
         return []
     distance = tool.radius + drive.wall_allowance
-    room = AxisRegion.of(level.boundary, distance)
+    axis_region = AxisRegion.of(level.boundary, distance)
     rest = Region(tuple(p for r in rests for p in r.pieces))
-    if not room.region:
+    if not axis_region.region:
         return [
             warning(
                 "corner.too-wide",
@@ -219,13 +221,13 @@ def _left(
                 remedy="choose a smaller cutter",
             )
         ]
-    left = rest.minus(room.region.offset(tool.radius + tolerance.SEW)).area
-    if left < SMALLEST_LEFTOVER:
+    remaining = rest.minus(axis_region.region.offset(tool.radius + tolerance.SEW)).area
+    if remaining < SMALLEST_LEFTOVER:
         return []
     return [
         info(
             "corner.left",
-            f"{left:.1f} mm2 in corners of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay: they "
+            f"{remaining:.1f} mm2 in corners of {drive.feature} between {level.bottom:.2f} and {level.top:.2f} stay: they "
             f"are sharper than {tool.name}",
             drive.feature,
             remedy="choose a smaller cutter for the corners",

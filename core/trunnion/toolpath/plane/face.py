@@ -136,7 +136,7 @@ def _cut_rows(
     turned: bool,
     zigzag: bool,
 ) -> None:
-    def place(u: float, v: float) -> tuple[float, float, float]:
+    def position(u: float, v: float) -> tuple[float, float, float]:
         return (v, u, z) if turned else (u, v, z)
 
     # Climbing with the uncut material on the right: the first row goes towards -x (towards +y when turned, where right is +x).
@@ -144,14 +144,14 @@ def _cut_rows(
     for n, v in enumerate(rows):
         begin, end = along if forward else along[::-1]
         if n == 0 or not zigzag:
-            travel(builder, place(begin, v)[:2], z)
-        builder.line(place(end, v), builder.data.feed)
+            travel(builder, position(begin, v)[:2], z)
+        builder.line(position(end, v), builder.data.feed)
         if zigzag and n + 1 < len(rows):
             # Half a turn outside, anticlockwise where the next row lies on the left of the direction.
             left = (rows[n + 1] > v) == (forward != turned)
-            middle = place(end, 0.5 * (v + rows[n + 1]))
+            middle = position(end, 0.5 * (v + rows[n + 1]))
             builder.arc(
-                place(end, rows[n + 1]),
+                position(end, rows[n + 1]),
                 middle[:2],
                 math.pi if left else -math.pi,
                 builder.data.feed,

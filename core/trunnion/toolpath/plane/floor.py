@@ -22,7 +22,7 @@ from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import floor_leftovers
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.passes import passes_over
 from trunnion.toolpath.offsetting.rings import safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -68,7 +68,7 @@ def floor(
 ) -> Planned:
     """Return the motions that finish every floor of the drive, from the highest down, and what they leave."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = ClearingParameters(
+    parameters = ClearingParameters(
         step=safe_step(tool, data.width),
         ramp=math.radians(settings.ramp_angle),
         slot=settings.slot_feed,
@@ -84,7 +84,7 @@ def floor(
             + foot_clearance(each.fillet, tool.corner_radius, 0.0)
         )
         passes = passes_over(
-            each.region, level.boundary, tool, distance, manner.step, mitred=each.fillet > 0.0
+            each.region, level.boundary, tool, distance, parameters.step, mitred=each.fillet > 0.0
         )
         if not passes.rings:
             findings.append(
@@ -98,18 +98,22 @@ def floor(
                 )
             )
             continue
-        clear(
+        clear_area(
             builder,
-            ClearingLayer(z=each.z, rings=passes.rings, room=passes.room, clip=passes.clip),
-            manner,
+            ClearingLayer(
+                z=each.z, rings=passes.rings, axis_region=passes.axis_region, clip=passes.clip
+            ),
+            parameters,
             progress,
         )
-        left = each.region.minus(passes.room.region.offset(distance + tolerance.SEW)).area
-        if left > SMALLEST_LEFTOVER:
+        remaining = each.region.minus(
+            passes.axis_region.region.offset(distance + tolerance.SEW)
+        ).area
+        if remaining > SMALLEST_LEFTOVER:
             findings.append(
                 info(
                     "floor.left",
-                    f"{left:.0f} mm2 of the floor at {each.z:.2f} stay in corners that {tool.name} can't reach",
+                    f"{remaining:.0f} mm2 of the floor at {each.z:.2f} stay in corners that {tool.name} can't reach",
                     drive.feature,
                     f"face {each.face}",
                     remedy="finish them with the corners, by a smaller cutter",

@@ -36,7 +36,7 @@ SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
 
 RIM_SPACING = 2.0
-"""mm between the places of the blank's rim whose distance from the profile is measured."""
+"""mm between the positions of the blank's rim whose distance from the profile is measured."""
 
 
 @settings("plane.profile_rough")
@@ -90,7 +90,7 @@ def profile_rough(
             tool.radius + drive.wall_allowance + n * min(data.width, margin / count)
             for n in reversed(range(count))
         ]
-        rooms: dict[tuple[int, float], tuple[AxisRegion, list[Curve]]] = {}
+        axis_regions: dict[tuple[int, float], tuple[AxisRegion, list[Curve]]] = {}
         for z in steps_down(max(guide.top, drive.stock_top), guide.bottom, data.depth):
             boundary = level_at(drive, z).boundary
             for distance in distances:
@@ -99,14 +99,16 @@ def profile_rough(
                     f"{drive.feature}: layer at {z:.3f}",
                 )
                 key = (id(boundary), distance)
-                if key not in rooms:
-                    room = AxisRegion.of(boundary, distance)
-                    rooms[key] = (
-                        room,
-                        _touching(contour_parts(room, guide.curve, distance), stock, tool.radius),
+                if key not in axis_regions:
+                    axis_region = AxisRegion.of(boundary, distance)
+                    axis_regions[key] = (
+                        axis_region,
+                        _touching(
+                            contour_parts(axis_region, guide.curve, distance), stock, tool.radius
+                        ),
                     )
-                cut_parts(builder, rooms[key][1], z, rooms[key][0], approach)
-        findings += _left(drive, guide, tool, drive.wall_allowance)
+                cut_parts(builder, axis_regions[key][1], z, axis_regions[key][0], approach)
+        findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
 
 
@@ -136,8 +138,10 @@ def profile_finish(
                 (guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW),
                 f"{drive.feature}: pass at {z:.3f}",
             )
-            room = AxisRegion.of(level_at(drive, z).boundary, distance)
-            cut_parts(builder, contour_parts(room, guide.curve, distance), z, room, approach)
+            axis_region = AxisRegion.of(level_at(drive, z).boundary, distance)
+            cut_parts(
+                builder, contour_parts(axis_region, guide.curve, distance), z, axis_region, approach
+            )
         if tool.corner_radius > 0.0:
             findings.append(
                 warning(
@@ -148,7 +152,7 @@ def profile_finish(
                     remedy="choose a flat cutter",
                 )
             )
-        findings += _left(drive, guide, tool, drive.wall_allowance)
+        findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
 
 
@@ -161,14 +165,14 @@ def _steps(
     step = min(data.depth, tool.flute_length)
     if data.depth >= height - tolerance.SEW:
         step = tool.flute_length
-    room = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
+    axis_region = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
     # The disc a cell short of the wall: the cells at its rim are the part's own.
-    standing = [
+    material_inside = [
         stock.height(a, b, max(tool.radius - stock.cell, stock.cell))
-        for part in contour_parts(room, guide.curve, distance)
+        for part in contour_parts(axis_region, guide.curve, distance)
         for a, b in pairwise(points_along(part, tool.radius)[1])
     ]
-    return steps_down(max([guide.top, *standing]), guide.bottom, step)
+    return steps_down(max([guide.top, *material_inside]), guide.bottom, step)
 
 
 def _planned(drive: PlaneDrive, builder: PathBuilder, findings: list[Finding]) -> Planned:
@@ -206,10 +210,12 @@ def _touching(parts: list[Curve], stock: PlanningStock, radius: float) -> list[C
     return [piece for part in parts for piece in parts_where(part, near)]
 
 
-def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float) -> list[Finding]:
+def _remaining_findings(
+    drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float
+) -> list[Finding]:
     distance, height = tool.radius + allowance, guide.top - guide.bottom
-    room = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
-    if not room.region:
+    axis_region = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
+    if not axis_region.region:
         return [
             warning(
                 "profile.no-room",
@@ -219,7 +225,7 @@ def _left(drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float) -> 
                 remedy="choose a smaller cutter",
             )
         ]
-    missed = length_out_of_reach(room, guide.curve, distance)
+    missed = length_out_of_reach(axis_region, guide.curve, distance)
     if missed * height < SMALLEST_LEFTOVER:
         return []
     return [

@@ -19,7 +19,7 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import top_width
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.levels import steps_down
 from trunnion.toolpath.offsetting.rings import ring_tree, safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -70,7 +70,7 @@ def rib_top(
 ) -> Planned:
     """Return the motions that bring a top to its height by layers, and what of it the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = ClearingParameters(
+    parameters = ClearingParameters(
         step=safe_step(tool, data.width),
         ramp=math.radians(settings.ramp_angle),
         slot=settings.slot_feed * data.slot_share,
@@ -78,8 +78,8 @@ def rib_top(
     findings: list[Finding] = []
     above = max(drive.top, drive.stock_top)
     for level in drive.levels:
-        room = AxisRegion.of(level.boundary, tool.radius + settings.wall_distance)
-        over = _over(level, room, tool, settings.overhang)
+        axis_region = AxisRegion.of(level.boundary, tool.radius + settings.wall_distance)
+        over = _over(level, axis_region, tool, settings.overhang)
         if not over:
             findings.append(
                 warning(
@@ -90,23 +90,26 @@ def rib_top(
                 )
             )
             continue
-        rings = ring_tree(over, manner.step)
+        rings = ring_tree(over, parameters.step)
         for z in steps_down(above, level.bottom, data.depth):
             progress.at(
                 (drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW),
                 f"{drive.feature}: layer at {z:.3f}",
             )
             if not stock.is_clear(z + tolerance.COINCIDENT, level.wanted):
-                clear(
-                    builder, ClearingLayer(z=z, rings=rings, room=room, top=None), manner, progress
+                clear_area(
+                    builder,
+                    ClearingLayer(z=z, rings=rings, axis_region=axis_region, top=None),
+                    parameters,
+                    progress,
                 )
             above = z
-        left = level.wanted.minus(over.offset(_flat(tool) + tolerance.SEW)).area
-        if left > SMALLEST_LEFTOVER:
+        remaining = level.wanted.minus(over.offset(_flat(tool) + tolerance.SEW)).area
+        if remaining > SMALLEST_LEFTOVER:
             findings.append(
                 info(
                     "rib.left",
-                    f"{left:.0f} mm2 of the top of {drive.feature} stay beside walls",
+                    f"{remaining:.0f} mm2 of the top of {drive.feature} stay beside walls",
                     drive.feature,
                     remedy="choose a flat cutter, or a smaller one",
                 )
@@ -118,14 +121,14 @@ def _flat(tool: Tool) -> float:
     return max(tool.radius - tool.corner_radius, tolerance.SLIVER)
 
 
-def _over(level: DriveLevel, room: AxisRegion, tool: Tool, overhang: float) -> Region:
+def _over(level: DriveLevel, axis_region: AxisRegion, tool: Tool, overhang: float) -> Region:
     """Return where the axis goes: over the top and a little more, and beside it where a wall keeps the axis away from its flares."""
     near = level.wanted.offset(overhang) if overhang > 0.0 else level.wanted
-    over = room.region.intersect(near)
+    over = axis_region.region.intersect(near)
     missed = level.wanted.minus(over.offset(_flat(tool))) if over else level.wanted
     missed = Region(tuple(p for p in missed.pieces if p.area > tolerance.SEW))
     return (
-        over.union(room.region.intersect(missed.offset(_flat(tool) + FLARE_MARGIN)))
+        over.union(axis_region.region.intersect(missed.offset(_flat(tool) + FLARE_MARGIN)))
         if missed
         else over
     )

@@ -19,7 +19,7 @@ from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased
 from trunnion.toolpath.motion.engagement import full_width
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.levels import layers
 from trunnion.toolpath.offsetting.passes import ClearingPasses, passes_over
 from trunnion.toolpath.offsetting.rings import safe_step
@@ -35,7 +35,7 @@ RIDGE = 0.3
 """mm: highest ridge between passes of a cutter with a rounded end; the next layer or the floor's finish takes it away."""
 
 WORTH = 0.2
-"""Of a layer: stock that stands no higher over it isn't worth a pass in it."""
+"""Of a layer: stock that is no higher over it isn't worth a pass in it."""
 
 
 @settings("plane.rough")
@@ -61,13 +61,13 @@ def rough(
 ) -> Planned:
     """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
-    manner = ClearingParameters(
+    parameters = ClearingParameters(
         step=safe_step(tool, data.width, RIDGE),
         ramp=math.radians(settings.ramp_angle),
         slot=settings.slot_feed * data.slot_share,
     )
     findings: list[Finding] = []
-    left: list[tuple[DriveLevel, float]] = []
+    remaining: list[tuple[DriveLevel, float]] = []
     above, first = max(drive.top, drive.stock_top), True
     for n, level in enumerate(drive.levels):
         heights = layers(
@@ -86,42 +86,44 @@ def rough(
                     level.boundary,
                     tool,
                     distance,
-                    manner.step,
+                    parameters.step,
                     mitred=drive.fillet > 0.0,
                 )
             passes = made[distance]
-            if passes.rings and not _is_clear(builder, level.wanted, z):
+            if passes.rings and not _is_cleared(builder, level.wanted, z):
                 known = None if first or passes.clip is not None else above
-                clear(
+                clear_area(
                     builder,
                     ClearingLayer(
                         z=z,
                         rings=passes.rings,
-                        room=passes.room,
+                        axis_region=passes.axis_region,
                         clip=passes.clip,
                         top=known,
                         wanted=level.wanted,
                         worth=min(RIDGE, WORTH * (above - z)),
                     ),
-                    manner,
+                    parameters,
                     progress,
                 )
             above, first = z, False
-        if made and not made[max(made)].room.region:
+        if made and not made[max(made)].axis_region.region:
             findings.append(_too_wide(drive, level, tool))
         elif made:
-            left.append((level, _left(level, max(made), made[max(made)].room.region)))
+            remaining.append(
+                (level, _remaining_area(level, max(made), made[max(made)].axis_region.region))
+            )
     findings += _corners(
-        drive, tool, [(level, area) for level, area in left if area >= SMALLEST_LEFTOVER]
+        drive, tool, [(level, area) for level, area in remaining if area >= SMALLEST_LEFTOVER]
     )
     return Planned(
-        path=eased(builder.finished(), tool, data, stock, manner.slot, progress),
+        path=eased(builder.finished(), tool, data, stock, parameters.slot, progress),
         findings=tuple(findings),
     )
 
 
 def _horizontals(drive: PlaneDrive, row: int) -> list[float]:
-    """Return the heights of horizontal faces that the layers of a band end on: floors, and tops of what stands in the next band."""
+    """Return the heights of horizontal faces that the layers of a band end on: floors, and tops of what is in the next band."""
     level = drive.levels[row]
     found = [f.z for f in drive.floors]
     if (
@@ -137,8 +139,8 @@ def _foot(drive: PlaneDrive, tool: Tool, z: float) -> float:
     return max((foot_clearance(drive.fillet, tool.corner_radius, t) for t in above), default=0.0)
 
 
-def _is_clear(builder: PathBuilder, wanted: Region, z: float) -> bool:
-    """Say whether the stock has nothing left above `z` over an area, its rim not looked at."""
+def _is_cleared(builder: PathBuilder, wanted: Region, z: float) -> bool:
+    """Return whether the stock has nothing left above `z` over an area, its rim not looked at."""
     stock = builder.stock()
     inner = wanted.offset(-RIM * stock.cell)
     return bool(inner) and stock.is_clear(z + tolerance.COINCIDENT, inner)
@@ -155,21 +157,24 @@ def _too_wide(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Finding:
     )
 
 
-def _left(level: DriveLevel, distance: float, room: Region) -> float:
-    """Return the area in mm2 that a cutter leaves of what is wanted, its axis everywhere in a room that keeps a distance from the rim."""
-    return level.wanted.minus(room.offset(distance + tolerance.SEW)).area
+def _remaining_area(level: DriveLevel, distance: float, region: Region) -> float:
+    """Return the area in mm2 that a cutter leaves of what is wanted, its axis everywhere in an axis region that keeps a distance from the
+    rim."""
+    return level.wanted.minus(region.offset(distance + tolerance.SEW)).area
 
 
-def _corners(drive: PlaneDrive, tool: Tool, left: list[tuple[DriveLevel, float]]) -> list[Finding]:
+def _corners(
+    drive: PlaneDrive, tool: Tool, remaining: list[tuple[DriveLevel, float]]
+) -> list[Finding]:
     """Return one finding for all bands with corners that are left."""
-    if not left:
+    if not remaining:
         return []
     most, low, high = (
-        max(area for _, area in left),
-        min(level.bottom for level, _ in left),
-        max(level.top for level, _ in left),
+        max(area for _, area in remaining),
+        min(level.bottom for level, _ in remaining),
+        max(level.top for level, _ in remaining),
     )
-    size = f"{most:.0f} mm2" if len(left) == 1 else f"up to {most:.0f} mm2"
+    size = f"{most:.0f} mm2" if len(remaining) == 1 else f"up to {most:.0f} mm2"
     return [
         info(
             "rough.left",

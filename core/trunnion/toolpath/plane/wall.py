@@ -24,7 +24,7 @@ from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import eased_leftovers
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear
+from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.contour import (
     ContourApproach,
     contour_parts,
@@ -86,20 +86,20 @@ def wall(
         rounds=2 if settings.spring else 1,
     )
     findings: list[Finding] = []
-    rooms: dict[tuple[int, float, bool], AxisRegion] = {}
+    axis_regions: dict[tuple[int, float, bool], AxisRegion] = {}
     for n, guide in enumerate(drive.walls):
         found = False
         for z, extra in _heights(guide, tool, min(data.depth, tool.flute_length), settings.scallop):
             progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
             boundary = _off_other_feet(level_at(drive, z).boundary, drive, guide, tool, z)
             distance = tool.radius + drive.wall_allowance + extra
-            room = _room(
-                rooms, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
+            axis_region = _axis_region(
+                axis_regions, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
             )
-            parts = contour_parts(room, guide.curve, distance)
-            cut_parts(builder, parts, z, room, approach)
+            parts = contour_parts(axis_region, guide.curve, distance)
+            cut_parts(builder, parts, z, axis_region, approach)
             found = found or bool(parts)
-        findings += _left(drive, guide, tool, found, rooms)
+        findings += _remaining_findings(drive, guide, tool, found, axis_regions)
     if settings.floor_rest:
         for each in drive.floors:
             progress.check()
@@ -137,8 +137,8 @@ def _off_other_feet(
         elif more > tolerance.COINCIDENT:
             islands = islands.union(Region.of([other.curve]).offset(more))
     if pocket > tolerance.COINCIDENT:
-        standing = _inside_of(w for w in (*drive.walls, *drive.beside) if w.is_around)
-        boundary = boundary.union(standing).offset(-pocket).minus(standing)
+        material_inside = _inside_of(w for w in (*drive.walls, *drive.beside) if w.is_around)
+        boundary = boundary.union(material_inside).offset(-pocket).minus(material_inside)
     return boundary.minus(islands) if islands else boundary
 
 
@@ -156,35 +156,45 @@ def _cut_floor_rest(
     approach: ContourApproach,
     progress: Progress,
 ) -> None:
-    """Cut what a larger floor cutter left where it had no room: floor that neither it nor the wall passes have certainly reached."""
+    """Cut what a larger floor cutter left where it had no space: floor that neither it nor the wall passes have certainly reached."""
     stock = builder.stock()
     inner = each.region.offset(-each.fillet - RIM * stock.cell)
-    places = stock.places_above(each.z + tolerance.COINCIDENT, inner)
-    if not len(places):
+    positions = stock.positions_above(each.z + tolerance.COINCIDENT, inner)
+    if not len(positions):
         return
     rest = union_all(
         [
             Region.rectangle(*(low - stock.cell), *(high + stock.cell))
-            for low, high in _clusters(places, tool.radius)
+            for low, high in _clusters(positions, tool.radius)
         ]
     )
     distance = (
         tool.radius + drive.wall_allowance + foot_clearance(each.fillet, tool.corner_radius, 0.0)
     )
     level = level_at(drive, each.z)
-    room = AxisRegion.of(level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level))
+    axis_region = AxisRegion.of(
+        level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level)
+    )
     step = safe_step(tool, tool.radius)
     clip = rest.offset(step)
-    layer = ClearingLayer(z=each.z, rings=ring_tree(room.region, step, clip), room=room, clip=clip)
-    clear(builder, layer, ClearingParameters(step=step, ramp=approach.ramp, slot=1.0), progress)
+    layer = ClearingLayer(
+        z=each.z,
+        rings=ring_tree(axis_region.region, step, clip),
+        axis_region=axis_region,
+        clip=clip,
+    )
+    clear_area(
+        builder, layer, ClearingParameters(step=step, ramp=approach.ramp, slot=1.0), progress
+    )
 
 
-def _clusters(places: Floats, apart: float) -> list[tuple[Floats, Floats]]:
-    """Return the boxes (low, high) around groups of places (k, 2) that are nearer to one another than `apart`, by squares of that size."""
-    squares = np.floor(places / apart).astype(int)
+def _clusters(positions: Floats, apart: float) -> list[tuple[Floats, Floats]]:
+    """Return the boxes (low, high) around groups of positions (k, 2) that are nearer to one another than `apart`, by squares of that
+    size."""
+    squares = np.floor(positions / apart).astype(int)
     boxes = []
     for square in np.unique(squares, axis=0):
-        inside = places[(squares == square).all(axis=1)]
+        inside = positions[(squares == square).all(axis=1)]
         boxes.append((inside.min(axis=0), inside.max(axis=0)))
     return boxes
 
@@ -205,25 +215,25 @@ def _heights(
     ]
 
 
-def _room(
-    rooms: dict[tuple[int, float, bool], AxisRegion],
+def _axis_region(
+    axis_regions: dict[tuple[int, float, bool], AxisRegion],
     boundary: Region,
     distance: float,
     *,
     mitred: bool = False,
 ) -> AxisRegion:
     key = (id(boundary), distance, mitred)
-    if key not in rooms:
-        rooms[key] = AxisRegion.of(boundary, distance, mitred=mitred)
-    return rooms[key]
+    if key not in axis_regions:
+        axis_regions[key] = AxisRegion.of(boundary, distance, mitred=mitred)
+    return axis_regions[key]
 
 
-def _left(
+def _remaining_findings(
     drive: PlaneDrive,
     guide: WallGuide,
     tool: Tool,
     found: bool,
-    rooms: dict[tuple[int, float, bool], AxisRegion],
+    axis_regions: dict[tuple[int, float, bool], AxisRegion],
 ) -> list[Finding]:
     height = guide.top - guide.bottom
     if not found:
@@ -250,7 +260,9 @@ def _left(
         )
     distance = tool.radius + drive.wall_allowance
     missed = length_out_of_reach(
-        _room(rooms, level_at(drive, guide.bottom).boundary, distance), guide.curve, distance
+        _axis_region(axis_regions, level_at(drive, guide.bottom).boundary, distance),
+        guide.curve,
+        distance,
     )
     if missed * height > SMALLEST_LEFTOVER:
         findings.append(

@@ -20,7 +20,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 
 CELL = 0.5
@@ -63,12 +63,12 @@ class PlanningStock:
         corner = _fixed(low[:2] - 0.5 * (count * cell - size))
         shape = (int(count[0]), int(count[1]))
         heights = blank.tops(setup.frame, corner, cell, shape, float(low[2]))
-        told = digest(shape, high[2].item(), corner, cell)
+        key = digest(shape, high[2].item(), corner, cell)
         if (heights < high[2]).any():
-            told = digest(told, heights)
-        return PlanningStock(heights=_fixed(heights), corner=corner, cell=cell, digest=told)
+            key = digest(key, heights)
+        return PlanningStock(heights=_fixed(heights), corner=corner, cell=cell, digest=key)
 
-    def after(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> PlanningStock:
+    def after(self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS) -> PlanningStock:
         """Return the stock after the feed moves of a path."""
         if (path.motion == Motion.RAPID).all():
             return self
@@ -83,7 +83,7 @@ class PlanningStock:
         """Return a copy that `zmap_cut` may change; its digest stays that of the stock it was taken from."""
         return replace(self, heights=self.heights.copy())
 
-    def lower(self, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> Floats:
+    def lower(self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS) -> Floats:
         """Take the feed moves of a path off this very field, which must be a `working` copy; return the volume (n,) in mm3 that each
         block takes off."""
         starts, ends, rows, error = chords(path)
@@ -105,7 +105,7 @@ class PlanningStock:
         return volume
 
     def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
-        """Return the greatest height that a disc may touch on its way from `start` to `end` (2,), or -inf over nothing."""
+        """Return the greatest height that a disc may touch on its path from `start` to `end` (2,), or -inf over nothing."""
         a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
         return float(
             heightfield.zmap_highest(
@@ -114,17 +114,17 @@ class PlanningStock:
         )
 
     def is_clear(self, z: float, area: Region) -> bool:
-        """Say whether no cell in an area is higher than `z`; an area without cells is."""
+        """Return whether no cell in an area is higher than `z`; an area without cells is."""
         if not area:
             return True
         some = self._above(z, area)
-        # Most areas that are not clear show it at a few places; only then are all of them looked at.
+        # Most areas that are not clear show it at a few positions; only then are all of them looked at.
         few = some[:: max(1, len(some) // 64)]
         return not (len(few) and area.contains(few).any()) and not (
             len(some) and area.contains(some).any()
         )
 
-    def places_above(self, z: float, area: Region) -> Floats:
+    def positions_above(self, z: float, area: Region) -> Floats:
         """Return the centres (k, 2) of the cells in an area that are higher than `z`."""
         centres = self._above(z, area)
         return centres[area.contains(centres)] if len(centres) else centres
@@ -132,7 +132,7 @@ class PlanningStock:
     def cells_above(self, z: float, area: Region) -> Bools:
         """Return which cells (nx, ny) are higher than `z` and have their centre in an area."""
         found = np.zeros(self.heights.shape, dtype=np.bool_)
-        cells = np.floor((self.places_above(z, area) - self.corner) / self.cell).astype(np.int64)
+        cells = np.floor((self.positions_above(z, area) - self.corner) / self.cell).astype(np.int64)
         found[cells[:, 0], cells[:, 1]] = True
         return found
 
@@ -168,18 +168,18 @@ def chords(path: Toolpath) -> tuple[Floats, Floats, Ints, float]:
     count[arcs] = np.maximum(np.ceil(np.abs(sweep[arcs]) / step), 1).astype(np.int64)
     count[path.motion == Motion.RAPID] = 0
     rows = np.repeat(np.arange(len(path)), count)
-    place = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
-    share = np.stack([place, place + 1], axis=1) / count[rows][:, None]
-    ends = [_places(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
+    step_index = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
+    share = np.stack([step_index, step_index + 1], axis=1) / count[rows][:, None]
+    ends = [_positions(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
     return ends[0], ends[1], rows, ARC_CHORD if arcs.any() else 0.0
 
 
-def places_on(path: Toolpath, rows: Ints, share: Floats) -> Floats:
-    """Return places (m, 3) on blocks (m,) of a path, at shares (m,) of their way."""
-    return _places(path, path.starts(), path.sweeps(), rows, share)
+def positions_on(path: Toolpath, rows: Ints, share: Floats) -> Floats:
+    """Return positions (m, 3) on blocks (m,) of a path, at shares (m,) of their length."""
+    return _positions(path, path.starts(), path.sweeps(), rows, share)
 
 
-def _places(path: Toolpath, start: Floats, sweep: Floats, rows: Ints, share: Floats) -> Floats:
+def _positions(path: Toolpath, start: Floats, sweep: Floats, rows: Ints, share: Floats) -> Floats:
     points = start[rows] + share[:, None] * (path.position[rows] - start[rows])
     arcs = np.flatnonzero(path.motion[rows] >= Motion.ARC_CW)
     at = rows[arcs]

@@ -1,6 +1,6 @@
 """One planning stock for each direction that a tool comes from, and what each knows of what the others have cut.
 
-A field of heights says that everything above it is gone. Seen from another direction that leaves, column by column, the highest place in
+A field of heights says that everything above it is gone. Seen from another direction that leaves, column by column, the highest position in
 the blank that no field has above it: taken over in steps of a cell, always on the side of material.
 """
 
@@ -18,12 +18,12 @@ from trunnion.model.blank import Blank
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
-BESIDE = 3
-"""Cells that a place is compared with in another field, in each of its directions: the cells it may lie in for all of its own cell."""
+NEIGHBOURHOOD = 3
+"""Cells that a position is compared with in another field, in each of its directions: the cells it may lie in for all of its own cell."""
 
 
 class StockViews:
@@ -52,7 +52,9 @@ class StockViews:
                 )
         return self._stocks[name]
 
-    def cut(self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = QUIET) -> None:
+    def cut(
+        self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS
+    ) -> None:
         """Take a path in the frame of a setup off its stock. A leaning tool takes nothing off: the stock is then higher than it is."""
         if len(path) and bool(
             (path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC).all()
@@ -65,14 +67,14 @@ def _lowered(
     stock: PlanningStock, frame: Frame, other: PlanningStock, other_frame: Frame, lowest: float
 ) -> PlanningStock:
     """Return a stock without what another one, seen from elsewhere, knows to be gone; nothing is lower than `lowest`."""
-    material = maximum_filter(other.heights, BESIDE, mode="nearest")
-    places, heights = _centres(stock), stock.heights.ravel().copy()
+    material = maximum_filter(other.heights, NEIGHBOURHOOD, mode="nearest")
+    positions, heights = _centres(stock), stock.heights.ravel().copy()
     step, last = stock.cell, np.array(material.shape) - 1
     rows = np.flatnonzero(heights > lowest)
     while len(rows):
         # The middle of the uppermost step of each column: gone when all around it is.
         there = other_frame.to_local(
-            frame.to_world(np.column_stack([places[rows], heights[rows] - 0.5 * step]))
+            frame.to_world(np.column_stack([positions[rows], heights[rows] - 0.5 * step]))
         )
         cell = np.floor((there[:, :2] - other.corner) / other.cell).astype(np.int64)
         outside = ((cell < 0) | (cell > last)).any(axis=1)

@@ -8,12 +8,12 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.contact_passes.stepover.fronts import scallop_passes
-from trunnion.toolpath.contact_passes.upright.fixed_axis import stood
+from trunnion.toolpath.contact_passes.upright.fixed_axis import upright_passes
 from trunnion.toolpath.contact_passes.upright.upright_path import upright_path
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.choices import safety
@@ -57,12 +57,17 @@ def constant(
     stock: PlanningStock,
     setup: Setup,
     settings: ConstantSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Planned:
     """Return the motions of passes at a constant scallop height over the drive's faces, and what they leave."""
-    ways = scallop_passes(drive, tool, settings.chord, progress.part(0.0, 0.4))
-    done = stood(
-        ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8)
+    contact_lines = scallop_passes(drive, tool, settings.chord, progress.part(0.0, 0.4))
+    done = upright_passes(
+        contact_lines,
+        drive,
+        tool,
+        settings.chord,
+        math.radians(settings.steepest),
+        progress.part(0.4, 0.8),
     )
     inwards = settings.order == "inwards"
     passes = list(done.passes if inwards else done.passes[::-1])

@@ -1,7 +1,7 @@
 """Finishing by passes in parallel upright planes, as far apart as the wanted scallop height allows where the faces lean most across them.
 
-Planes are laid over all places where the cutter's tip is while it touches the area, and each is followed over the whole part's skin. What
-touches a face of the area is cut, and a little more on either side, so that no mark stays where areas meet.
+Planes are laid over all positions where the cutter's tip is while it touches the area, and each is followed over the whole part's skin.
+What touches a face of the area is cut, and a little more on either side, so that no mark stays where areas meet.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
     marched,
-    places_of,
+    slopes_of,
     strips_over,
     tip_spacing,
 )
@@ -44,13 +44,13 @@ from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 ALONG = 0.1
-"""Of the cutter's radius: distance of the places along a plane that are asked for what the cutter touches."""
-CLOSER = 7
-"""Times the distance between a place that touches the area and one that doesn't is halved."""
+"""Of the cutter's radius: distance of the positions along a plane that are queried for what the cutter touches."""
+HALVINGS = 7
+"""Times the distance between a position that touches the area and one that doesn't is halved."""
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
-Touches = Callable[[Ints, Floats, Progress], Bools]
-"""Says for planes (n,) and places (n,) along them whether the cutter touches the area there."""
+HasContact = Callable[[Ints, Floats, Progress], Bools]
+"""Returns for planes (n,) and positions (n,) along them whether the cutter touches the area there."""
 
 
 @settings("surface.parallel")
@@ -166,12 +166,12 @@ def parallel(
         raise Refused(
             f"{drive.feature}: parallel passes need a scallop height or a stepover above zero"
         )
-    places = places_of(drive, tool)
-    places = places.some(places.normal[:, 2] >= math.cos(math.radians(settings.steepest)))
-    found = _too_steep(drive, places)
-    if not len(places.row):
+    slopes = slopes_of(drive, tool)
+    slopes = slopes.some(slopes.normal[:, 2] >= math.cos(math.radians(settings.steepest)))
+    found = _too_steep(drive, slopes)
+    if not len(slopes.row):
         return Planned(findings=found)
-    planes = _planes(places, tool, drive.height, settings)
+    planes = _planes(slopes, tool, drive.height, settings)
     passes = _passes(planes, drive, tool, settings, progress.part(0.0, 0.6))
     if not passes:
         return Planned(findings=(*found, _untouched(drive, tool)))
@@ -184,7 +184,7 @@ def parallel(
         settings.chord,
         progress.part(0.6, 0.7),
     )
-    manner = LinkParameters(
+    parameters = LinkParameters(
         stepover=planes.widest,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
@@ -193,7 +193,7 @@ def parallel(
         chord=settings.chord,
     )
     return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.7, 1.0)),
+        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.7, 1.0)),
         findings=(*found, *lost),
     )
 
@@ -224,18 +224,18 @@ class _Planes:
     triangles: Ints
 
 
-def _planes(places: FacetSlopes, tool: Tool, height: float, settings: ParallelSettings) -> _Planes:
-    """Return the planes of the direction that is asked for, or of the better one of both sides of the box around the area."""
+def _planes(slopes: FacetSlopes, tool: Tool, height: float, settings: ParallelSettings) -> _Planes:
+    """Return the planes of the direction that is requested, or of the better one of both sides of the box around the area."""
     if settings.direction == "angle":
-        return _laid(places, tool, height, math.radians(settings.angle), settings.stepover)
+        return _laid(slopes, tool, height, math.radians(settings.angle), settings.stepover)
     box = shapely.get_coordinates(
-        shapely.oriented_envelope(shapely.MultiPoint(places.tips.reshape(-1, 3)[:, :2]))
+        shapely.oriented_envelope(shapely.MultiPoint(slopes.tips.reshape(-1, 3)[:, :2]))
     )
     sides = np.diff(box[:3], axis=0)
     longest = sides[np.argmax(np.hypot(*sides.T))]
     angle = math.atan2(longest[1], longest[0]) % math.pi
     both = [
-        _laid(places, tool, height, a, settings.stepover)
+        _laid(slopes, tool, height, a, settings.stepover)
         for a in (angle, (angle + 0.5 * math.pi) % math.pi)
     ]
     return min(
@@ -246,18 +246,18 @@ def _planes(places: FacetSlopes, tool: Tool, height: float, settings: ParallelSe
     )
 
 
-def _laid(places: FacetSlopes, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
-    """Return the planes at an angle (radians), from one side of the area to the other, as far apart as any place near both allows."""
+def _laid(slopes: FacetSlopes, tool: Tool, height: float, angle: float, stepover: float) -> _Planes:
+    """Return the planes at an angle (radians), from one side of the area to the other, as far apart as any position near both allows."""
     along, across = (
         np.array([math.cos(angle), math.sin(angle)]),
         np.array([-math.sin(angle), math.cos(angle)]),
     )
-    run, beside = places.tips[:, :, :2] @ along, places.tips[:, :, :2] @ across
-    low, high = beside.min(axis=1), beside.max(axis=1)
+    run, sideways = slopes.tips[:, :, :2] @ along, slopes.tips[:, :, :2] @ across
+    low, high = sideways.min(axis=1), sideways.max(axis=1)
     spacing = (
         np.full(len(low), stepover)
         if stepover > 0.0
-        else tip_spacing(places, tool, height, np.append(across, 0.0))
+        else tip_spacing(slopes, tool, height, np.append(across, 0.0))
     )
     at = marched(low, high, spacing, float(low.min()), float(high.max()))
     # From where to where along a plane the tips of the triangles are that it passes.
@@ -283,7 +283,7 @@ def _laid(places: FacetSlopes, tool: Tool, height: float, angle: float, stepover
         reach=np.column_stack([least[rows], most[rows]])[kept],
         widest=float(np.diff(at).max(initial=width)),
         beyond=beyond,
-        triangles=places.row,
+        triangles=slopes.row,
     )
 
 
@@ -291,15 +291,16 @@ def _passes(
     planes: _Planes, drive: SurfaceDrive, tool: Tool, settings: ParallelSettings, progress: Progress
 ) -> list[Pass]:
     """Return the passes where the cutter touches the area, plane by plane; none where it touches it nowhere."""
+    # What a drop at a position in a plane touches: the area itself, or the strip past its rim.
     pieces, lowest = lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length
     on_area = np.zeros(len(drive.skin.triangles), dtype=bool)
     on_area[planes.triangles] = True
     area = DropSurface.of(drive.skin.points, drive.skin.triangles[on_area])
     strip = OverrunStrip.of(drive.skin, drive.faces, planes.beyond)
 
-    def asked(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
+    def contacted(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
         plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
-        z, facet, contact = drive.skin.drop.touch(plan, pieces, lowest, share)
+        z, facet, contact = drive.skin.drop.contacts(plan, pieces, lowest, share)
         found = (facet >= 0) & on_area[np.maximum(facet, 0)]
         # On the rim either of two faces may be named.
         other = np.flatnonzero((facet >= 0) & ~found)
@@ -310,20 +311,25 @@ def _passes(
         within = (run >= planes.reach[plane, 0]) & (run <= planes.reach[plane, 1])
         return np.asarray(found & within), np.asarray(~found & strip.has(contact, facet))
 
-    def touches(plane: Ints, run: Floats, share: Progress) -> Bools:
-        area, beside = asked(plane, run, share)
-        return area | beside
+    def has_contact(plane: Ints, run: Floats, share: Progress) -> Bools:
+        area, others = contacted(plane, run, share)
+        return area | others
 
     # While the contact goes over the strip, the tip of a cutter that rolls over something tight goes its radius farther at most.
     plane, runs = _runs(
-        planes, ALONG * tool.radius, planes.beyond + tool.radius, touches, progress.part(0.0, 0.4)
+        planes,
+        ALONG * tool.radius,
+        planes.beyond + tool.radius,
+        has_contact,
+        progress.part(0.0, 0.4),
     )
     # A run that ends past a smooth join has gone on over it.
-    beside = asked(np.repeat(plane, 2), runs.ravel(), progress.part(0.4, 0.4))[1].reshape(-1, 2)
-    overlap = np.where(beside, max(settings.overlap - planes.beyond, 0.0), settings.overlap)
+    others = contacted(np.repeat(plane, 2), runs.ravel(), progress.part(0.4, 0.4))[1].reshape(-1, 2)
+    overlap = np.where(others, max(settings.overlap - planes.beyond, 0.0), settings.overlap)
     plane, runs = _joined(plane, runs, overlap, tool.radius)
     if not len(runs):
         return []
+    # Follow the runs over the whole skin, so that nothing beside the area is gouged (`tracing.follow`).
     lines = [
         planes.at[p] * planes.across + np.outer(r, planes.along)
         for p, r in zip(plane, runs, strict=True)
@@ -331,7 +337,7 @@ def _passes(
     tips = follow(drive.skin.drop, pieces, lines, settings.chord, lowest, progress.part(0.4, 0.9))
     count = np.cumsum([len(t) for t in tips])[:-1]
     plan = np.concatenate([np.zeros((0, 2)), *(t[:, :2] for t in tips)])
-    facet = drive.skin.drop.touch(plan, pieces, lowest, progress.part(0.9, 1.0))[1]
+    facet = drive.skin.drop.contacts(plan, pieces, lowest, progress.part(0.9, 1.0))[1]
     normals = np.split(_facing(drive.skin, facet), count)
     lift = drive.allowance * UPRIGHT
     return [
@@ -351,7 +357,7 @@ def _facing(skin: Skin, facet: Ints) -> Floats:
 
 
 def _too_steep(drive: SurfaceDrive, level: FacetSlopes) -> tuple[Finding, ...]:
-    """Return a finding of the area that no level place stands for."""
+    """Return a finding of the area that no level position stands for."""
     a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - level.area.sum())
     if area < SMALLEST_LEFTOVER:
@@ -367,35 +373,38 @@ def _too_steep(drive: SurfaceDrive, level: FacetSlopes) -> tuple[Finding, ...]:
 
 
 def _runs(
-    planes: _Planes, step: float, past: float, touches: Touches, progress: Progress
+    planes: _Planes, step: float, past: float, has_contact: HasContact, progress: Progress
 ) -> tuple[Ints, Floats]:
     """Return the plane (k,) and from where to where (k, 2) along it the cutter touches the area, one run after the other; it is
-    looked for on places a step apart, and no farther than `past` mm beyond the area's tips."""
+    looked for on positions a step apart, and no farther than `past` mm beyond the area's tips."""
+    # Sample the planes at even steps, then bisect each change between contact and none.
     before = math.ceil(past / step) + 1
     count = (
         np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 1 + 2 * before
     )
     plane = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
-    run = planes.reach[plane, 0] + place * step
-    on = touches(plane, run, progress.part(0.0, 0.8))
+    step_index = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
+    run = planes.reach[plane, 0] + step_index * step
+    on = has_contact(plane, run, progress.part(0.0, 0.8))
     on[[*(np.cumsum(count) - count), *(np.cumsum(count) - 1)]] = False
     edge = np.flatnonzero((on[1:] != on[:-1]) & (plane[1:] == plane[:-1]))
     inside, outside = (
         np.where(on[edge], run[edge], run[edge + 1]),
         np.where(on[edge], run[edge + 1], run[edge]),
     )
-    for k in range(CLOSER):
+    for k in range(HALVINGS):
         middle = 0.5 * (inside + outside)
-        found = touches(
-            plane[edge], middle, progress.part(0.8 + 0.2 * k / CLOSER, 0.8 + 0.2 * (k + 1) / CLOSER)
+        found = has_contact(
+            plane[edge],
+            middle,
+            progress.part(0.8 + 0.2 * k / HALVINGS, 0.8 + 0.2 * (k + 1) / HALVINGS),
         )
         inside, outside = np.where(found, middle, inside), np.where(found, outside, middle)
     return plane[edge[::2]], inside.reshape(-1, 2)
 
 
 def _joined(plane: Ints, runs: Floats, overlap: Floats, gap: float) -> tuple[Ints, Floats]:
-    """Return runs (k, 2) with overlaps (k, 2) at their ends, and as one where the way between two is no longer than a gap. One that stays
+    """Return runs (k, 2) with overlaps (k, 2) at their ends, and as one where the path between two is no longer than a gap. One that stays
     shorter than any move is left out: it only touches a corner of the area."""
     runs = runs + overlap * np.array([-1.0, 1.0])
     begins = np.append(True, (plane[1:] != plane[:-1]) | (runs[1:, 0] - runs[:-1, 1] > gap))[

@@ -1,8 +1,8 @@
 """Finishing valleys: passes along the lines where the cutter touches two faces at once, and beside them where a larger one left material.
 
-Over a grid of drops the place that is touched moves little from point to point, but jumps where the cutter rolls from one side of a valley
-to the other. The lines through these jumps are the valleys (pencil lines); where an earlier cutter was larger it stood higher in them, and
-passes are laid beside the lines as far as it did.
+Over a grid of drops the position that is touched moves little from point to point, but jumps where the cutter rolls from one side of a
+valley to the other. The lines through these jumps are the valleys (pencil lines); where an earlier cutter was larger it stood higher in
+them, and passes are laid beside the lines as far as it did.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
-from trunnion.toolpath.contact_passes.stepover.spacing import places_of
+from trunnion.toolpath.contact_passes.stepover.spacing import slopes_of
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import follow
 from trunnion.toolpath.contract import Planned, strategy
@@ -37,10 +37,10 @@ CELL, FINEST, COARSEST = 0.1, 0.05, 0.5
 """Of the cutter's radius, and mm at least and at most: side of the grid's cells."""
 MARGIN = 3
 """Cells round the area's tips that are looked at."""
-CLOSER = 14
-"""Times the distance between two places on both sides of a valley is halved."""
+HALVINGS = 14
+"""Times the distance between two positions on both sides of a valley is halved."""
 JUMP = 2.0
-"""Cells that touched places on both sides of a valley are apart at least, beyond what a turn of the face explains."""
+"""Cells that touched positions on both sides of a valley are apart at least, beyond what a turn of the face explains."""
 MOST_SIDES = 200
 """Passes beside a valley at most."""
 SHORTEST = 0.5
@@ -120,8 +120,8 @@ def pencil(
         raise Refused(
             f"{tool.name}: a flat end can't follow valleys of curved faces; choose a ball, bull, taper or barrel end"
         )
-    places = places_of(drive, tool)
-    if not len(places.row):
+    slopes = slopes_of(drive, tool)
+    if not len(slopes.row):
         return Planned(findings=(_nothing(drive, tool),))
     cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
     ground = _Ground(
@@ -130,7 +130,7 @@ def pencil(
         lowest=float(drive.low[2]) - tool.flute_length,
     )
     valleys = _valleys(
-        spread(places.tips, cell),
+        spread(slopes.tips, cell),
         cell,
         ground,
         math.radians(settings.angle),
@@ -143,10 +143,12 @@ def pencil(
     lines = [
         line
         for valley in valleys
-        for line in _beside(valley, stepover, _sides(valley, stepover, ground, tool, settings))
+        for line in _parallel_passes(
+            valley, stepover, _sides(valley, stepover, ground, tool, settings)
+        )
     ]
     passes = _passes(lines, ground, settings.chord, progress.part(0.5, 0.8))
-    manner = LinkParameters(
+    parameters = LinkParameters(
         stepover=stepover,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
@@ -155,7 +157,7 @@ def pencil(
         chord=settings.chord,
     )
     return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0))
+        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0))
     )
 
 
@@ -167,9 +169,9 @@ class _Ground:
     pieces: Floats
     lowest: float
 
-    def touch(self, plan: Floats, progress: Progress) -> tuple[Floats, Bools, Floats]:
-        """Return over plan points (n, 2) how high the tip stands, whether it touches the area, and where it touches (n, 3)."""
-        z, facet, contact = self.drive.skin.drop.touch(plan, self.pieces, self.lowest, progress)
+    def contacts(self, plan: Floats, progress: Progress) -> tuple[Floats, Bools, Floats]:
+        """Return over plan points (n, 2) how high the tip is, whether it touches the area, and where it touches (n, 3)."""
+        z, facet, contact = self.drive.skin.drop.contacts(plan, self.pieces, self.lowest, progress)
         return (
             z,
             np.asarray((facet >= 0) & self.drive.skin.of(self.drive.faces)[np.maximum(facet, 0)]),
@@ -190,31 +192,34 @@ def _valleys(
     tips: Floats, cell: float, ground: _Ground, angle: float, progress: Progress
 ) -> list[Floats]:
     """Return the valleys (k, 2) near tips (n, 3), in plan: what the cutter touches jumps across them."""
+    # Jumps of the contact along edges of a grid of drops mark a valley.
     grid = grid_around(tips, cell, MARGIN)
-    z, on_area, contact = ground.touch(grid.points[:, :2], progress.part(0.0, 0.5))
+    z, on_area, contact = ground.contacts(grid.points[:, :2], progress.part(0.0, 0.5))
     ends, side = edges_of(grid.triangles, len(grid.points))
     a, b = ends.T
     apart = np.linalg.norm(contact[a] - contact[b], axis=1)
-    # Seen from the cutter the touched places of a valley are turned from each other; a face that bends moves them by less.
+    # Seen from the cutter the touched positions of a valley are turned from each other; a face that bends moves them by less.
     reach = np.column_stack([grid.points[:, :2], z + ground.pieces[-1, 4]])
     turned = _angle(reach[a] - contact[a], reach[b] - contact[b]) >= angle
     jumps = turned & (apart > JUMP * cell) & (on_area[a] | on_area[b]) & np.isfinite(apart)
     rows = np.flatnonzero(jumps)
+    # Bisect each jumping edge to where the contact changes sides.
     near, far = grid.points[a[rows], :2].copy(), grid.points[b[rows], :2].copy()
-    for k in range(CLOSER):
+    for k in range(HALVINGS):
         middle = 0.5 * (near + far)
-        _, _, found = ground.touch(
-            middle, progress.part(0.5 + 0.5 * k / CLOSER, 0.5 + 0.5 * (k + 1) / CLOSER)
+        _, _, found = ground.contacts(
+            middle, progress.part(0.5 + 0.5 * k / HALVINGS, 0.5 + 0.5 * (k + 1) / HALVINGS)
         )
         stays = np.linalg.norm(found - contact[a[rows]], axis=1) <= np.linalg.norm(
             found - contact[b[rows]], axis=1
         )
         near, far = np.where(stays[:, None], middle, near), np.where(stays[:, None], far, middle)
-    place = np.full((len(ends), 2), np.nan)
-    place[rows] = 0.5 * (near + far)
+    position = np.full((len(ends), 2), np.nan)
+    position[rows] = 0.5 * (near + far)
+    # Join jumps across triangles with two of them: every triangle passes a line on, or ends it.
     both = jumps[side].sum(axis=1) == 2
     pairs = np.sort(np.where(jumps[side[both]], side[both], -1), axis=1)[:, 1:]
-    return [place[line] for line in _chained(pairs)]
+    return [position[line] for line in _chained(pairs)]
 
 
 def _angle(a: Floats, b: Floats) -> Floats:
@@ -224,25 +229,25 @@ def _angle(a: Floats, b: Floats) -> Floats:
 
 def _chained(pairs: Ints) -> list[Ints]:
     """Return the lines of nodes that pairs (p, 2) of neighbours make, none of which has more than two."""
-    beside: dict[int, list[int]] = {}
+    neighbours: dict[int, list[int]] = {}
     for a, b in pairs.tolist():
-        beside.setdefault(a, []).append(b)
-        beside.setdefault(b, []).append(a)
+        neighbours.setdefault(a, []).append(b)
+        neighbours.setdefault(b, []).append(a)
     lines, used = [], set()
     # Open lines first, from their lower end; what is left then is closed.
-    for first in sorted(beside, key=lambda node: (len(beside[node]), node)):
+    for first in sorted(neighbours, key=lambda node: (len(neighbours[node]), node)):
         if first in used:
             continue
         line, here = [first], first
         used.add(first)
         while True:
-            ahead = [n for n in beside[here] if n not in used]
+            ahead = [n for n in neighbours[here] if n not in used]
             if not ahead:
                 break
             here = min(ahead)
             used.add(here)
             line.append(here)
-        if len(line) > 2 and first in beside[here]:
+        if len(line) > 2 and first in neighbours[here]:
             line.append(first)
         if len(line) > 1:
             lines.append(np.array(line))
@@ -259,21 +264,23 @@ def _sides(
     larger = _Ground(
         drive=ground.drive, pieces=lower_side(earlier, ground.drive.allowance), lowest=ground.lowest
     )
-    way = np.gradient(valley, axis=0)
+    direction = np.gradient(valley, axis=0)
     left = (
-        np.column_stack([-way[:, 1], way[:, 0]])
-        / np.maximum(np.hypot(way[:, 0], way[:, 1]), np.finfo(float).tiny)[:, None]
+        np.column_stack([-direction[:, 1], direction[:, 0]])
+        / np.maximum(np.hypot(direction[:, 0], direction[:, 1]), np.finfo(float).tiny)[:, None]
     )
     far = 0.0
     for aside in (-0.05 * tool.radius, 0.05 * tool.radius):
-        places = valley + aside * left
-        (_, _, theirs), (_, _, ours) = (g.touch(places, QUIET) for g in (larger, ground))
+        positions = valley + aside * left
+        (_, _, theirs), (_, _, ours) = (
+            g.contacts(positions, NO_PROGRESS) for g in (larger, ground)
+        )
         beyond = np.abs(((theirs - ours)[:, :2] * left).sum(axis=1))
         far = max(far, float(np.nanmax(beyond, initial=0.0)))
     return min(math.ceil(far / stepover) + 1, MOST_SIDES)
 
 
-def _beside(valley: Floats, stepover: float, sides: int) -> list[Floats]:
+def _parallel_passes(valley: Floats, stepover: float, sides: int) -> list[Floats]:
     """Return a valley and the lines (k, 2) beside it, from one side to the other."""
     line = shapely.LineString(valley)
     found = []
@@ -291,7 +298,7 @@ def _passes(lines: list[Floats], ground: _Ground, chord: float, progress: Progre
         ground.drive.skin.drop, ground.pieces, lines, chord, ground.lowest, progress.part(0.0, 0.8)
     )
     plan = np.concatenate([tip[:, :2] for tip in tips])
-    _, on_area, contact = ground.touch(plan, progress.part(0.8, 1.0))
+    _, on_area, contact = ground.contacts(plan, progress.part(0.8, 1.0))
     passes, first = [], 0
     for tip in tips:
         rows = np.arange(first, first + len(tip))

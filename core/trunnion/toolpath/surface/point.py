@@ -1,6 +1,6 @@
 """Point milling: a cutter led along passes of contacts, its axis leaning to a field and out of the way of everything.
 
-Contacts come from flow lines or passes of constant scallop, axes from `lean`; where the cutter stands follows from its form. Blocks are as
+Contacts come from flow lines or passes of constant scallop, axes from `lean`; where the cutter is follows from its form. Blocks are as
 long as the cutter, carried straight from tip to tip while its axis turns evenly, stays within the chord error of the faces, on either side.
 """
 
@@ -27,7 +27,7 @@ from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at, touching
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.axis_fields import (
     AxisField,
@@ -42,7 +42,7 @@ from trunnion.toolpath.contact_passes.axis_search import (
     FreeAxes,
     LeanLimits,
     free_axes,
-    roomy,
+    thickened,
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
@@ -55,12 +55,12 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import trimmed
 
 SHARES = (0.25, 0.5, 0.75)
-"""Where on a block its chord error is looked at, beside the contacts on its way."""
+"""Where on a block its chord error is looked at, beside the contacts on its path."""
 HALVINGS = 12
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
-STANDING, LEAST_STANDING = 2.0, 1.0
-"""How much material neck, shank and holder are kept clear of where there is room: times the depth of cut, and mm at least. Earlier cutters
+STOCK_SHARE, LEAST_STOCK = 2.0, 1.0
+"""How much material neck, shank and holder are kept clear of where there is space: times the depth of cut, and mm at least. Earlier cutters
 leave more in corners than on faces."""
 OVERLAP = 0.25
 """Of an earlier cutter's radius: how far what it left is cut beyond its end."""
@@ -74,7 +74,7 @@ SMALLEST_LEFTOVER = 0.5
 
 @settings("surface.point")
 class PointSettings:
-    """How the tool leans, how its axis may turn, and how finely the way is cut."""
+    """How the tool leans, how its axis may turn, and how finely the path is cut."""
 
     pattern: str = setting(
         "flow",
@@ -176,11 +176,11 @@ class PointSettings:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class PointMilledPasses:
-    """Passes of a leaning cutter, the stretches of the contact ways that had to be left, and their share of the ways."""
+    """Passes of a leaning cutter, the stretches of the contact lines that had to be left, and their share of the paths."""
 
     passes: tuple[Pass, ...]
     rest: tuple[Contacts, ...]
-    left: float
+    remaining: float
 
 
 @strategy(
@@ -193,31 +193,37 @@ def point(
     stock: PlanningStock,
     setup: Setup,
     settings: PointSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Planned:
     """Return the path of a leaning tool over the drive's faces, or over what an earlier cutter left of them, and what it must leave."""
-    if drive.ask is None:
+    if drive.query_for is None:
         raise Refused(
             f"{drive.feature}: point milling leans the tool; choose a machine with rotary axes, or another strategy"
         )
-    ask, lead, tilt = drive.ask(tool), math.radians(settings.lead), math.radians(settings.tilt)
+    query, lead, tilt = (
+        drive.query_for(tool),
+        math.radians(settings.lead),
+        math.radians(settings.tilt),
+    )
     ball = grooving(tool, lead, tilt)
-    ways, told = _ways(drive, ball, settings, progress.part(0.0, 0.3))
+    contact_lines, pattern_findings = _contact_lines(drive, ball, settings, progress.part(0.0, 0.3))
     if settings.way == "both":
-        ways = tuple(way.reversed() if k % 2 else way for k, way in enumerate(ways))
+        contact_lines = tuple(
+            contacts.reversed() if k % 2 else contacts for k, contacts in enumerate(contact_lines)
+        )
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=math.radians(settings.steepest))
     field = field_of(settings, drive.frame)
     if drive.earlier is not None:
-        ways = rest_of(
-            ways,
+        contact_lines = rest_of(
+            contact_lines,
             drive.earlier,
             field,
-            drive.ask(drive.earlier),
+            drive.query_for(drive.earlier),
             limits,
             drive.allowance,
             progress.part(0.3, 0.4),
         )
-        if not ways:
+        if not contact_lines:
             return Planned(
                 findings=(
                     info(
@@ -227,41 +233,54 @@ def point(
                     ),
                 )
             )
-    # Clear of what still stands beside the faces, and where no lean is, clear of the part itself.
-    wide = drive.ask(roomy(tool, max(STANDING * data.depth, LEAST_STANDING)))
+    # Clear of the material that remains beside the faces, and where no lean is, clear of the part itself.
+    wide = drive.query_for(thickened(tool, max(STOCK_SHARE * data.depth, LEAST_STOCK)))
     done = milled(
-        ways, tool, field, wide, limits, settings.chord, drive.allowance, progress.part(0.4, 0.7)
+        contact_lines,
+        tool,
+        field,
+        wide,
+        limits,
+        settings.chord,
+        drive.allowance,
+        progress.part(0.4, 0.7),
     )
     tight = milled(
         done.rest,
         tool,
         field,
-        ask,
+        query,
         limits,
         settings.chord,
         drive.allowance,
         progress.part(0.7, 0.9),
     )
     done = PointMilledPasses(
-        passes=(*done.passes, *tight.passes), rest=tight.rest, left=done.left * tight.left
+        passes=(*done.passes, *tight.passes),
+        rest=tight.rest,
+        remaining=done.remaining * tight.remaining,
     )
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
-    findings = _left(done, drive, tool)
+    findings = _remaining_findings(done, drive, tool)
     if not done.passes:
-        return Planned(findings=(*told, *findings))
-    manner = LinkParameters(
+        return Planned(findings=(*pattern_findings, *findings))
+    parameters = LinkParameters(
         stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius
     )
-    path, met = _linked(done, drive, tool, data, stock, setup, manner, ask, progress.part(0.9, 1.0))
-    return Planned(path=path, findings=(*told, *findings, *met, *_low(path, drive, tool)))
+    path, met = _linked(
+        done, drive, tool, data, stock, setup, parameters, query, progress.part(0.9, 1.0)
+    )
+    return Planned(
+        path=path, findings=(*pattern_findings, *findings, *met, *_low(path, drive, tool))
+    )
 
 
-def _ways(
+def _contact_lines(
     drive: SurfaceDrive, ball: Tool, settings: PointSettings, progress: Progress
 ) -> tuple[tuple[Contacts, ...], tuple[Finding, ...]]:
-    """Return the ways of contacts that the pattern asks for, or those of constant scallop where flow lines don't suit the area, and then
+    """Return the lines of contacts that the pattern requests, or those of constant scallop where flow lines don't suit the area, and then
     a finding that says so."""
-    told: tuple[Finding, ...] = ()
+    pattern_findings: tuple[Finding, ...] = ()
     if settings.pattern == "flow":
         flow = FlowParameters(
             first_guide=settings.first_guide,
@@ -269,9 +288,9 @@ def _ways(
             spiral=settings.spiral,
         )
         try:
-            return flow_lines(drive, ball, flow, progress), told
+            return flow_lines(drive, ball, flow, progress), pattern_findings
         except DenseFlowLines as reason:
-            told = (
+            pattern_findings = (
                 info(
                     "point.pattern",
                     f"{drive.feature}: cut at a constant scallop, for {reason}",
@@ -281,116 +300,130 @@ def _ways(
             )
     # They run with what is inside on their left: the other way round a cutter that turns clockwise climbs.
     return tuple(
-        way.reversed() for way in scallop_passes(drive, ball, settings.chord, progress)
-    ), told
+        contacts.reversed() for contacts in scallop_passes(drive, ball, settings.chord, progress)
+    ), pattern_findings
 
 
 def milled(
-    ways: Sequence[Contacts],
+    contact_lines: Sequence[Contacts],
     tool: Tool,
     field: AxisField,
-    ask: ClearanceQuery | None,
+    query: ClearanceQuery | None,
     limits: LeanLimits,
     chord: float,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> PointMilledPasses:
-    """Return the passes of a cutter over contact passes, its axis as near to a field as `ask` and the limits let it.
+    """Return the passes of a cutter over contact passes, its axis as near to a field as `query` and the limits let it.
 
     The cutter stays within `chord` mm of where it touches, thicker by the allowance. Moves that touch what they must not are left out.
     """
-    if not ways:
-        return PointMilledPasses(passes=(), rest=(), left=0.0)
-    search = AxisSearch(ways, field, tool, ask, limits, allowance)
-    courses = search.courses(progress.part(0.0, 0.5))
-    found: list[list[tuple[Floats, Pass]]] = [[] for _ in ways]
-    again = list(range(len(ways)))
+    if not contact_lines:
+        return PointMilledPasses(passes=(), rest=(), remaining=0.0)
+    # Axes first, then the poses along them; moves that touch something go back to the search (`met`) until TRIES are over.
+    search = AxisSearch(contact_lines, field, tool, query, limits, allowance)
+    axes_of_lines = search.found_axes(progress.part(0.0, 0.5))
+    found: list[list[tuple[Floats, Pass]]] = [[] for _ in contact_lines]
+    again = list(range(len(contact_lines)))
     for n in range(TRIES):
         share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
         for k in share.over(again, "Following flow lines with a leaning tool"):
             found[k], met = _cut(
-                [located(ways[k], run, tool, chord, allowance) for run in courses[k].runs()], ask
+                [
+                    located(contact_lines[k], run, tool, chord, allowance)
+                    for run in axes_of_lines[k].runs()
+                ],
+                query,
             )
             if len(met) and n + 1 < TRIES:
                 search.met(k, met)
         again = np.flatnonzero(search.dirty).tolist()
-        courses = search.courses(share) if again else courses
+        axes_of_lines = search.found_axes(share) if again else axes_of_lines
+    # What no pass covers is the rest, in rows of the contacts: left to a thinner tool or reported.
     gaps = [
-        _gaps(len(way) - 1.0, [(float(place[0]), float(place[-1])) for place, _ in pieces])
-        for way, pieces in zip(ways, found, strict=True)
+        _gaps(
+            len(contacts) - 1.0,
+            [(float(position[0]), float(position[-1])) for position, _ in pieces],
+        )
+        for contacts, pieces in zip(contact_lines, found, strict=True)
     ]
-    whole, left = (
-        sum(_run(way, 0.0, len(way) - 1.0) for way in ways),
-        sum(_run(way, *g) for way, some in zip(ways, gaps) for g in some),
+    whole, remaining = (
+        sum(_run(contacts, 0.0, len(contacts) - 1.0) for contacts in contact_lines),
+        sum(_run(contacts, *g) for contacts, some in zip(contact_lines, gaps) for g in some),
     )
     rest = tuple(
-        way.of(slice(math.floor(a), math.ceil(b) + 1))
-        for way, some in zip(ways, gaps, strict=True)
+        contacts.of(slice(math.floor(a), math.ceil(b) + 1))
+        for contacts, some in zip(contact_lines, gaps, strict=True)
         for a, b in some
     )
     return PointMilledPasses(
         passes=tuple(one for pieces in found for _, one in pieces),
         rest=rest,
-        left=left / whole if whole > 0.0 else 0.0,
+        remaining=remaining / whole if whole > 0.0 else 0.0,
     )
 
 
 def rest_of(
-    ways: Sequence[Contacts],
+    contact_lines: Sequence[Contacts],
     earlier: Tool,
     field: AxisField,
-    ask: ClearanceQuery,
+    query: ClearanceQuery,
     limits: LeanLimits,
     allowance: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Contacts, ...]:
     """Return the stretches of contact passes where an earlier cutter had no free axis, and a little more all round."""
-    courses = free_axes(ways, field, earlier, ask, limits, allowance, progress)
+    axes_of_lines = free_axes(contact_lines, field, earlier, query, limits, allowance, progress)
     gone = np.vstack(
         [
             np.zeros((0, 3)),
             *(
-                between(way.point, way.normal, way.feed, course.place[~course.free])[0]
-                for way, course in zip(ways, courses, strict=True)
+                between(contacts.point, contacts.normal, contacts.feed, axes.position[~axes.free])[
+                    0
+                ]
+                for contacts, axes in zip(contact_lines, axes_of_lines, strict=True)
             ),
         ]
     )
     if not len(gone):
         return ()
-    tree, beside, found = cKDTree(gone), OVERLAP * earlier.radius + STEP / limits.turn, []
-    for way in ways:
-        near = tree.query(way.point)[0] <= beside
+    tree, overlap, found = cKDTree(gone), OVERLAP * earlier.radius + STEP / limits.turn, []
+    for contacts in contact_lines:
+        near = tree.query(contacts.point)[0] <= overlap
         edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]]).astype(np.int64)))
-        found += [way.of(slice(a, b)) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
+        found += [contacts.of(slice(a, b)) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
     return tuple(found)
 
 
 def located(
-    way: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
+    contacts: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
 ) -> tuple[Floats, Pass]:
-    """Return where a cutter stands along a run of a contact pass: the places (k,) of the way and the pass itself."""
-    radius, feed = max(tool.corner_radius, 0.25 * tool.radius), way.feed
-    travel = way.travel(radius)
-    place = run.place
-    rows = np.arange(len(way), dtype=np.float64)
-    rows = rows[(rows > place[0]) & (rows < place[-1])]
-    normal, axis, tip = _standing(way, feed, run, tool, allowance, place)
+    """Return where a cutter is along a run of a contact pass: the positions (k,) of the path and the pass itself."""
+    radius, feed = max(tool.corner_radius, 0.25 * tool.radius), contacts.feed
+    travel = contacts.travel(radius)
+    position = run.position
+    rows = np.arange(len(contacts), dtype=np.float64)
+    rows = rows[(rows > position[0]) & (rows < position[-1])]
+    normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
+    # Halve: off is the distance between the straight block and the contact's tip, along the face's normal.
     for _ in range(HALVINGS):
-        share = np.concatenate([place[:-1] + s * np.diff(place) for s in SHARES])
+        share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
         probe = np.concatenate([rows, share])
-        block = np.clip(np.searchsorted(place, probe, side="right") - 1, 0, len(place) - 2)
-        gone = np.interp(probe, np.arange(len(way)), travel)
-        ends = np.interp(place, np.arange(len(way)), travel)
+        block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
+        gone = np.interp(probe, np.arange(len(contacts)), travel)
+        ends = np.interp(position, np.arange(len(contacts)), travel)
         part = np.clip(
             (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
             0.0,
             1.0,
         )
         turned = slerp(axis[block], axis[block + 1], part)
-        at, out = between(way.point, way.normal, feed, probe)
-        stands = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
-        off = np.abs(((stands - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1))
-        worst = np.zeros(len(place) - 1)
+        at, out = between(contacts.point, contacts.normal, feed, probe)
+        tip_at_block = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
+        off = np.abs(
+            ((tip_at_block - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1)
+        )
+        worst = np.zeros(len(position) - 1)
         np.maximum.at(worst, block, off)
         split = np.flatnonzero(
             (worst > chord)
@@ -398,9 +431,11 @@ def located(
         )
         if not len(split):
             break
-        place = np.sort(np.concatenate([place, 0.5 * (place[split] + place[split + 1])]))
-        normal, axis, tip = _standing(way, feed, run, tool, allowance, place)
-    return place, Pass(tip=tip, axis=axis, normal=normal)
+        position = np.sort(
+            np.concatenate([position, 0.5 * (position[split] + position[split + 1])])
+        )
+        normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
+    return position, Pass(tip=tip, axis=axis, normal=normal)
 
 
 def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
@@ -437,25 +472,25 @@ def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
     )
 
 
-def field_of(chosen: PointSettings, frame: Frame) -> AxisField:
-    """Return the axis field that settings ask for; places and directions are given in the part's coordinates."""
-    numbers = _numbers(chosen.axis_from)
-    if chosen.axis == "normal":
-        return leaning(math.radians(chosen.lead), math.radians(chosen.tilt))
-    if chosen.axis == "vectors" and len(numbers) and len(numbers) % 6 == 0:
+def field_of(settings: PointSettings, frame: Frame) -> AxisField:
+    """Return the axis field that settings ask for; positions and directions are given in the part's coordinates."""
+    numbers = _numbers(settings.axis_from)
+    if settings.axis == "normal":
+        return leaning(math.radians(settings.lead), math.radians(settings.tilt))
+    if settings.axis == "vectors" and len(numbers) and len(numbers) % 6 == 0:
         rows = np.array(numbers).reshape(-1, 6)
         return interpolated(frame.to_local(rows[:, :3]), frame.local_direction(rows[:, 3:]))
-    if chosen.axis != "vectors" and len(numbers) == 3:
-        if chosen.axis == "fixed":
+    if settings.axis != "vectors" and len(numbers) == 3:
+        if settings.axis == "fixed":
             return fixed(frame.local_direction(np.array(numbers)))
-        return from_point(frame.to_local(np.array(numbers)), chosen.axis == "away")
+        return from_point(frame.to_local(np.array(numbers)), settings.axis == "away")
     wanted = (
         "vectors as x y z > i j k; x y z > i j k"
-        if chosen.axis == "vectors"
+        if settings.axis == "vectors"
         else "three numbers x y z"
     )
     raise BadInput(
-        f"Axis from (surface.point.axis_from) must be {wanted} while the tool axis is {chosen.axis}; got {chosen.axis_from!r}"
+        f"Axis from (surface.point.axis_from) must be {wanted} while the tool axis is {settings.axis}; got {settings.axis_from!r}"
     )
 
 
@@ -466,12 +501,12 @@ def _linked(
     data: CuttingData,
     stock: PlanningStock,
     setup: Setup,
-    manner: LinkParameters,
-    ask: ClearanceQuery,
+    parameters: LinkParameters,
+    query: ClearanceQuery,
     progress: Progress,
 ) -> tuple[Toolpath, tuple[Finding, ...]]:
     """Return the path through all passes; leads that touch something are tried shorter, what touches in the end is a finding."""
-    path, touched = Toolpath.join([]), np.zeros(0, dtype=bool)
+    path, has_contact = Toolpath.join([]), np.zeros(0, dtype=bool)
     for n, share in enumerate(LEADS):
         path = linked(
             done.passes,
@@ -480,22 +515,22 @@ def _linked(
             data,
             stock,
             setup,
-            replace(manner, lead_radius=share * manner.lead_radius),
+            replace(parameters, lead_radius=share * parameters.lead_radius),
             progress.part(n / len(LEADS), (n + 1) / len(LEADS)),
         )
         between_cuts = np.flatnonzero(path.mark[1:] != Mark.CUT) + 1
-        touched = ~ask(
+        has_contact = ~query(
             path.position[between_cuts],
             path.axis[between_cuts],
             start_tip=path.position[between_cuts - 1],
             start_axis=path.axis[between_cuts - 1],
         )
-        if not touched.any():
+        if not has_contact.any():
             return path, ()
     return path, (
         warning(
             "point.link",
-            f"{int(touched.sum())} moves between the passes of {drive.feature} touch part or fixtures",
+            f"{int(has_contact.sum())} moves between the passes of {drive.feature} touch part or fixtures",
             drive.feature,
             remedy="choose a smaller cutter or another lead, or cut fewer faces in one operation",
         ),
@@ -503,7 +538,7 @@ def _linked(
 
 
 def _low(path: Toolpath, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
-    """Say how far the leaning tool comes down beside the blank: no table is in the proof."""
+    """Return how far the leaning tool comes down beside the blank: no table is in the proof."""
     nose = path.position + tool.gauge_length * path.axis
     reach = np.sqrt(np.maximum(1.0 - path.axis[:, 2] ** 2, 0.0)) * tool.holder.radius
     deep = float(drive.low[2] - (nose[:, 2] - reach).min(initial=np.inf))
@@ -526,26 +561,26 @@ def _numbers(text: str) -> list[float]:
         return []
 
 
-def _standing(
-    way: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, place: Floats
+def _poses_at(
+    contacts: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, position: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Return the normals, axes and tips (k, 3) at places (k,) of a run."""
-    point, normal = between(way.point, way.normal, feed, place)
-    axis = run.at(place)
+    """Return the normals, axes and tips (k, 3) at positions (k,) of a run."""
+    point, normal = between(contacts.point, contacts.normal, feed, position)
+    axis = run.at(position)
     return normal, axis, tip_at(tool, point + allowance * normal, normal, axis)
 
 
 def _cut(
-    runs: Sequence[tuple[Floats, Pass]], ask: ClearanceQuery | None
+    runs: Sequence[tuple[Floats, Pass]], query: ClearanceQuery | None
 ) -> tuple[list[tuple[Floats, Pass]], Floats]:
-    """Return the stretches of runs whose moves are clear, and the places where a move is not."""
-    if ask is None:
+    """Return the stretches of runs whose moves are clear, and the positions where a move is not."""
+    if query is None:
         return list(runs), np.zeros(0)
     pieces, met = [], [np.zeros(0)]
-    for place, one in runs:
-        clear = ask(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1])
-        pieces += [(place[s], one.of(s)) for s in _stretches(clear)]
-        met.append(0.5 * (place[:-1] + place[1:])[~clear])
+    for position, one in runs:
+        clear = query(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1])
+        pieces += [(position[s], one.of(s)) for s in _stretches(clear)]
+        met.append(0.5 * (position[:-1] + position[1:])[~clear])
     return pieces, np.concatenate(met)
 
 
@@ -556,7 +591,7 @@ def _stretches(clear: Bools) -> list[slice]:
 
 
 def _gaps(end: float, done: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the stretches between places 0 and `end` that lie in none of those that are done."""
+    """Return the stretches between positions 0 and `end` that lie in none of those that are done."""
     found, here = [], 0.0
     for a, b in [*sorted(done), (end, end)]:
         if a > here + tolerance.COINCIDENT:
@@ -565,16 +600,18 @@ def _gaps(end: float, done: Sequence[tuple[float, float]]) -> list[tuple[float, 
     return found
 
 
-def _run(way: Contacts, start: float, end: float) -> float:
-    """Return the length in mm of the contact way from a place to another."""
-    length = way.travel(0.0)
-    return float(np.diff(np.interp([start, end], np.arange(len(way)), length))[0])
+def _run(contacts: Contacts, start: float, end: float) -> float:
+    """Return the length in mm of the contact line from a position to another."""
+    length = contacts.travel(0.0)
+    return float(np.diff(np.interp([start, end], np.arange(len(contacts)), length))[0])
 
 
-def _left(done: PointMilledPasses, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
+def _remaining_findings(
+    done: PointMilledPasses, drive: SurfaceDrive, tool: Tool
+) -> tuple[Finding, ...]:
     corners = drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = done.left * 0.5 * float(np.linalg.norm(across, axis=1).sum())
+    area = done.remaining * 0.5 * float(np.linalg.norm(across, axis=1).sum())
     if area < SMALLEST_LEFTOVER:
         return ()
     return (

@@ -8,12 +8,12 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes import choices
 from trunnion.toolpath.contact_passes.choices import TOO_STEEP
 from trunnion.toolpath.contact_passes.flow_lines import FlowParameters, flow_lines
-from trunnion.toolpath.contact_passes.upright.fixed_axis import stood
+from trunnion.toolpath.contact_passes.upright.fixed_axis import upright_passes
 from trunnion.toolpath.contact_passes.upright.upright_path import upright_path
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.choices import safety
@@ -61,7 +61,7 @@ def streamline(
     stock: PlanningStock,
     setup: Setup,
     settings: StreamlineSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> Planned:
     """Return the motions of an upright tool along flow lines over the drive's faces, and what it leaves."""
     flow = FlowParameters(
@@ -70,10 +70,15 @@ def streamline(
         spiral=settings.spiral,
         chord=settings.chord,
     )
-    ways = flow_lines(drive, tool, flow, progress.part(0.0, 0.4))
+    contact_lines = flow_lines(drive, tool, flow, progress.part(0.0, 0.4))
     to_and_fro = settings.pattern == "zigzag"
-    done = stood(
-        ways, drive, tool, settings.chord, math.radians(settings.steepest), progress.part(0.4, 0.8)
+    done = upright_passes(
+        contact_lines,
+        drive,
+        tool,
+        settings.chord,
+        math.radians(settings.steepest),
+        progress.part(0.4, 0.8),
     )
     return upright_path(
         done.passes,

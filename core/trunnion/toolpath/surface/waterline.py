@@ -1,8 +1,8 @@
 """Finishing steep faces and upright walls level by level, the tip at one height all round.
 
-At a height the cutter is blocked where a drop would stand higher: the rim of that area is the pass. It is found on a grid of drops, put
+At a height the cutter is blocked where a drop would be higher: the rim of that area is the pass. It is found on a grid of drops, put
 exactly on the grid's lines and then between them by halving, always on the free side, and cut where the cutter touches the area. From a
-blocked place the rim is no nearer than where the cutter, at its height, gets past what a drop touches: few such steps come to it.
+blocked position the rim is no nearer than where the cutter, at its height, gets past what a drop touches: few such steps come to it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
     level_spacing,
     marched,
-    places_of,
+    slopes_of,
 )
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import thinned
@@ -51,12 +51,12 @@ STEPS, DIRECT = 40, 2
 """Of a search, which mostly ends after two; and after how many every other one is longer."""
 HALVINGS = 16
 SEEN, THINNED = 0.25, 0.4
-"""Shares of the chord error: how far the rim may be from the middle of a chord, and a place that is taken out from its chord."""
+"""Shares of the chord error: how far the rim may be from the middle of a chord, and a position that is taken out from its chord."""
 INSIDE = (0.25, 8.0, 0.75, 2.0)
 """How far inside of where the rim is expected beside a chord its search begins: near first, in what a chord's middle is expected off it;
 then in chord errors and in the chord's length, as a corner needs."""
 BELOW_TOP = 0.1
-"""Of a step: how far the last level lies below the highest place."""
+"""Of a step: how far the last level lies below the highest position."""
 UPWARD = -math.sin(tolerance.ANGLE)
 """The least part along z of normals of upright walls."""
 NEARBY, ROUGHLY = 1.0, 2.5
@@ -153,16 +153,16 @@ def waterline(
     """Return the motions that finish the drive's faces level by level, and the area that is too shallow for it or hangs over."""
     if drive.height <= 0.0 and settings.step <= 0.0:
         raise Refused(f"{drive.feature}: waterlines need a scallop height or a step above zero")
-    places = progress.aside(lambda _: places_of(drive, tool, UPWARD), "Looking at steep faces")
-    places = places.some(places.normal[:, 2] <= math.cos(math.radians(settings.shallowest)))
-    found = _left(drive, places)
-    if not len(places.row):
+    slopes = progress.aside(lambda _: slopes_of(drive, tool, UPWARD), "Looking at steep faces")
+    slopes = slopes.some(slopes.normal[:, 2] <= math.cos(math.radians(settings.shallowest)))
+    found = _unreached_findings(drive, slopes)
+    if not len(slopes.row):
         return Planned(findings=found)
-    feet = _feet(places, drive, tool, progress.part(0.0, 0.1))
+    feet = _feet(slopes, drive, tool, progress.part(0.0, 0.1))
     levels = progress.aside(
-        lambda _: _levels(places, feet, tool, drive.height, settings.step), "Laying levels"
+        lambda _: _levels(slopes, feet, tool, drive.height, settings.step), "Laying levels"
     )
-    loops = _loops(levels, places, drive, tool, settings, progress.part(0.1, 0.8))
+    loops = _loops(levels, slopes, drive, tool, settings, progress.part(0.1, 0.8))
     passes = _in_order(loops, tool, both=settings.way == "both")
     if not passes:
         nothing = warning(
@@ -173,7 +173,7 @@ def waterline(
         )
         return Planned(findings=(*found, nothing))
     step = float(np.abs(np.diff(levels)).max(initial=tool.radius))
-    manner = LinkParameters(
+    parameters = LinkParameters(
         stepover=max(step, tool.radius),
         safety=settings.safety,
         lead_radius=settings.lead_radius,
@@ -182,13 +182,13 @@ def waterline(
         overlap=settings.overlap,
     )
     return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, manner, progress.part(0.8, 1.0)),
+        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
         findings=found,
     )
 
 
-def _left(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
-    """Return a finding of the area that no steep place stands for."""
+def _unreached_findings(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
+    """Return a finding of the area that no steep position stands for."""
     a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
     area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - steep.area.sum())
     if area < SMALLEST_LEFTOVER:
@@ -203,13 +203,16 @@ def _left(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
     )
 
 
-def _feet(places: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
+def _feet(slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
     """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
-    low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
-    upright = np.flatnonzero(places.normal[:, 2] <= -UPWARD)
-    beside = (places.tips[upright] + OFF * places.normal[upright, None])[:, :, :2].reshape(-1, 2)
+    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
+    upright = np.flatnonzero(slopes.normal[:, 2] <= -UPWARD)
+    shifted = (slopes.tips[upright] + OFF * slopes.normal[upright, None])[:, :, :2].reshape(-1, 2)
     over = drive.skin.drop.drop(
-        beside, lower_side(tool, drive.allowance), float(drive.low[2]) - tool.flute_length, progress
+        shifted,
+        lower_side(tool, drive.allowance),
+        float(drive.low[2]) - tool.flute_length,
+        progress,
     )
     over = over + drive.allowance
     stopped = over.reshape(-1, 3).min(axis=1) + FOOT
@@ -220,16 +223,16 @@ def _feet(places: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progre
     return low
 
 
-def _levels(places: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
-    """Return the heights of the tip (p,) upwards, from the lowest place that is touched; `feet` is how low the tip comes (m,)."""
-    low, high = places.tips[:, :, 2].min(axis=1), places.tips[:, :, 2].max(axis=1)
-    spacing = np.full(len(low), step) if step > 0.0 else level_spacing(places, tool, height)
+def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
+    """Return the heights of the tip (p,) upwards, from the lowest position that is touched; `feet` is how low the tip comes (m,)."""
+    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
+    spacing = np.full(len(low), step) if step > 0.0 else level_spacing(slopes, tool, height)
     spacing = np.minimum(
         spacing, FLANK * max(tool.flute_length - tool.corner_radius, tool.corner_radius)
     )
     levels = marched(low, high, spacing, float(feet.min()), float(high.max()))
     if len(levels) > 1:
-        if not (places.normal[high > levels[-2], 2] > -UPWARD).any():
+        if not (slopes.normal[high > levels[-2], 2] > -UPWARD).any():
             # The flank of the level below goes up an upright wall to its top.
             levels = levels[:-1]
         else:
@@ -244,7 +247,7 @@ def _levels(places: FacetSlopes, feet: Floats, tool: Tool, height: float, step: 
 
 
 def _without_near(feet: Floats, levels: Floats, least: float) -> list[float]:
-    """Return heights of feet, upwards, that have no level near above them: none nearer to each other than is asked for."""
+    """Return heights of feet, upwards, that have no level near above them: none nearer to each other than the setting."""
     found: list[float] = []
     for z in np.unique(feet).tolist():
         if (not found or z > found[-1] + least) and not (
@@ -264,27 +267,30 @@ class _Blocked:
     progress: Progress
 
     def heights(self, plan: Floats) -> Floats:
-        """Return how high the tip stands over plan points (n, 2)."""
+        """Return how high the tip is over plan points (n, 2)."""
         return self.drive.skin.drop.drop(plan, self.pieces, self.lowest, self.progress)
 
-    def rim(self, start: Floats, way: Floats, z: Floats, most: Floats) -> tuple[Floats, Bools]:
-        """Return how far (n,) the rim of what is blocked is from blocked plan points (n, 2) along unit ways (n, 2): as far as the free
-        side, no more than `CLOSE` from it. And say whether it is there, no farther than `most` (n,); from a free place it isn't."""
+    def rim(
+        self, start: Floats, direction: Floats, z: Floats, most: Floats
+    ) -> tuple[Floats, Bools]:
+        """Return how far (n,) the rim of what is blocked is from blocked plan points (n, 2) along unit directions (n, 2): as far as the
+        free side, no more than `CLOSE` from it. Also return whether it is there, no farther than `most` (n,); from a free place it
+        isn't."""
         low, high = np.zeros(len(z)), np.full(len(z), np.inf)
         at, rows = low.copy(), np.arange(len(z))
         for k in range(STEPS):
-            places = start[rows] + at[rows, None] * way[rows]
-            _, facet, contact = self.drive.skin.drop.touch(
-                places, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress
+            positions = start[rows] + at[rows, None] * direction[rows]
+            _, facet, contact = self.drive.skin.drop.contacts(
+                positions, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress
             )
             hits = facet >= 0
             high[rows[~hits]] = at[rows[~hits]]
             aside = contact[hits, :2] - start[rows[hits]]
-            ahead = (aside * way[rows[hits]]).sum(axis=1)
-            beside = (aside * aside).sum(axis=1) - ahead * ahead
+            ahead = (aside * direction[rows[hits]]).sum(axis=1)
+            lateral = (aside * aside).sum(axis=1) - ahead * ahead
             reach = radius_at(self.pieces, contact[hits, 2] - z[rows[hits]])
             low[rows[hits]] = np.maximum(
-                ahead + np.sqrt(np.maximum(reach * reach - beside, 0.0)), at[rows[hits]]
+                ahead + np.sqrt(np.maximum(reach * reach - lateral, 0.0)), at[rows[hits]]
             )
             rows = rows[(low[rows] < most[rows]) & (high[rows] - low[rows] > CLOSE)]
             if not len(rows):
@@ -303,7 +309,7 @@ class _Blocked:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Loop:
-    """A way (k, 2) in plan at a height, the number of its level counted upwards; what is closed ends where it begins."""
+    """A polyline (k, 2) in plan at a height, the number of its level counted upwards; what is closed ends where it begins."""
 
     plan: Floats
     z: float
@@ -313,13 +319,14 @@ class _Loop:
 
 def _loops(
     levels: Floats,
-    places: FacetSlopes,
+    slopes: FacetSlopes,
     drive: SurfaceDrive,
     tool: Tool,
     settings: WaterlineSettings,
     progress: Progress,
 ) -> list[_Loop]:
     """Return the passes where the cutter touches the area, lowest first, the material on their right."""
+    # Drop cutter on a grid: the level lines of its heights are the waterlines, to a cell.
     cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
     blocked = _Blocked(
         drive=drive,
@@ -328,7 +335,7 @@ def _loops(
         progress=progress,
     )
     # Tips are compared as drops put them, without the allowance that lifts the tool.
-    tips = spread(places.tips, cell) - drive.allowance * UPRIGHT
+    tips = spread(slopes.tips, cell) - drive.allowance * UPRIGHT
     levels = levels - drive.allowance
     grid = grid_around(tips, cell, MARGIN)
     heights = blocked.heights(grid.points[:, :2])
@@ -336,16 +343,17 @@ def _loops(
     numbers = np.concatenate([[-0.5], np.arange(len(levels)), [len(levels) - 0.5]])
     near, radius = cKDTree(tips), tool.radius + drive.allowance
     found: list[tuple[SheetLine, Ints, bool]] = []
+    # March the level lines; `numbers` maps heights so that all levels are whole numbers of one field.
     for line in whole_levels(grid, np.interp(heights, knots, numbers)):
         progress.check()
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
         plan = line.value(grid.points)[:, :2]
-        touches = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
+        near_area = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
         # So far only roughly, and as far as an edge may be rolled round.
         reach = settings.overlap + math.pi * radius
         found += [
             (line, rows, closed)
-            for rows, closed in _pieces(plan, touches, line.closed, reach, radius)
+            for rows, closed in _pieces(plan, near_area, line.closed, reach, radius)
         ]
     if not found:
         return []
@@ -353,26 +361,27 @@ def _loops(
     over = np.repeat(
         [levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found]
     )
+    # Exact crossings: along each cut edge of the grid, from the blocked end to the rim (`_Blocked.rim`).
     ends = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
     high, low = grid.points[ends[:, 0], :2], grid.points[ends[:, 1], :2]
     side = np.hypot(*(low - high).T)
-    way = (low - high) / side[:, None]
-    run, has_rim = blocked.rim(high, way, over, side)
-    plan = np.where(has_rim[:, None], high + run[:, None] * way, low)
+    direction = (low - high) / side[:, None]
+    run, has_rim = blocked.rim(high, direction, over, side)
+    plan = np.where(has_rim[:, None], high + run[:, None] * direction, low)
     split = np.split(plan, np.cumsum([len(rows) for _, rows, _ in found])[:-1])
     lines = []
-    for way, (line, _, closed) in zip(split, found, strict=True):
+    for loop, (line, _, closed) in zip(split, found, strict=True):
         z = float(levels[line.level])
         for rows, whole in _pieces(
-            way, _apart(near, way, z) <= NEARBY * cell, closed, settings.overlap, radius
+            loop, _apart(near, loop, z) <= NEARBY * cell, closed, settings.overlap, radius
         ):
-            rows = rows[np.append(True, np.hypot(*np.diff(way[rows], axis=0).T) > CLOSE)]
+            rows = rows[np.append(True, np.hypot(*np.diff(loop[rows], axis=0).T) > CLOSE)]
             if len(rows) > 1:
-                lines.append(_Loop(plan=way[rows], z=z, level=line.level, closed=whole))
-    ways = _closer(lines, blocked, settings.chord)
+                lines.append(_Loop(plan=loop[rows], z=z, level=line.level, closed=whole))
+    refined = _refined(lines, blocked, settings.chord)
     return [
-        replace(line, plan=way, z=line.z + drive.allowance)
-        for line, way in zip(lines, ways, strict=True)
+        replace(line, plan=loop, z=line.z + drive.allowance)
+        for line, loop in zip(lines, refined, strict=True)
     ]
 
 
@@ -384,8 +393,8 @@ def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
 def _pieces(
     plan: Floats, near: Bools, closed: bool, overlap: float, radius: float
 ) -> list[tuple[Ints, bool]]:
-    """Return the rows of the pieces of a way (k, 2) that are near the area, roll round an edge of it, or are no farther along the way than
-    an overlap from such, and whether each is closed."""
+    """Return the rows of the pieces of a path (k, 2) that are near the area, roll round an edge of it, or are no farther along the path
+    than an overlap from such, and whether each is closed."""
     rows = np.arange(len(plan))
     if not near.any():
         return []
@@ -396,9 +405,9 @@ def _pieces(
     if near.all():
         return [(rows, closed)] if len(rows) > 1 else []
     run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(plan, axis=0).T))])
-    places = np.concatenate([[-np.inf], run[near], [np.inf]])
-    after = np.clip(np.searchsorted(places, run), 1, len(places) - 1)
-    wanted = np.minimum(places[after] - run, run - places[after - 1]) <= overlap
+    limits = np.concatenate([[-np.inf], run[near], [np.inf]])
+    after = np.clip(np.searchsorted(limits, run), 1, len(limits) - 1)
+    wanted = np.minimum(limits[after] - run, run - limits[after - 1]) <= overlap
     if wanted.all():
         return [(rows, closed)]
     if closed:
@@ -410,8 +419,8 @@ def _pieces(
 
 
 def _rolls(plan: Floats, near: Bools, radius: float) -> Bools:
-    """Say of places (k, 2) between two that are near the area whether the cutter rolls round an edge there: the way is as long as the arc
-    of its radius between both."""
+    """Return for positions (k, 2) between two that are near the area whether the cutter rolls round an edge there: the path is as long as
+    the arc of its radius between both."""
     out = np.zeros(len(plan), dtype=bool)
     rows = np.flatnonzero(near)
     run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(plan, axis=0).T))])
@@ -423,8 +432,8 @@ def _rolls(plan: Floats, near: Bools, radius: float) -> Bools:
     return out
 
 
-def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]:
-    """Return the ways with places put in until no chord leaves the rim of what is blocked by more than a chord error."""
+def _refined(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]:
+    """Return the paths with positions put in until no chord leaves the rim of what is blocked by more than a chord error."""
     if not loops:
         return []
     plan, z = (
@@ -432,6 +441,7 @@ def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]
         np.repeat([loop.z for loop in loops], [len(loop.plan) for loop in loops]),
     )
     line = np.repeat(np.arange(len(loops)), [len(loop.plan) for loop in loops])
+    # Halve: off is where a smooth rim would be, from the turns at both ends; a chord is closed when its middle is found there.
     off = _bulges(plan, line)
     is_open = np.append(line[1:] == line[:-1], False)
     for _ in range(HALVINGS):
@@ -451,7 +461,7 @@ def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]
             for old, new in ((plan, middle), (z, z[rows]), (line, line[rows]), (off, off[rows]))
         )
         is_open = np.insert(is_open, rows + 1, is_open[rows])
-        # Beside a corner a chord that was never looked at may leave the way.
+        # Beside a corner a chord that was never looked at may leave the path.
         is_open |= np.abs(_bulges(plan, line)) > SEEN * chord
         is_open[:-1] &= (line[1:] == line[:-1]) & (np.hypot(*np.diff(plan, axis=0).T) > chord)
     kept = thinned(plan, line, THINNED * chord)
@@ -459,12 +469,12 @@ def _closer(loops: list[_Loop], blocked: _Blocked, chord: float) -> list[Floats]
 
 
 def _bulges(plan: Floats, line: Ints) -> Floats:
-    """Return how far to the left (n,) of the middle of the chord from each place (n, 2) of lines to the next a smooth way would be, as the
-    lines turn at both ends."""
-    way = np.diff(plan, axis=0)
-    length = np.hypot(way[:, 0], way[:, 1])
-    turn = way[:-1, 0] * way[1:, 1] - way[:-1, 1] * way[1:, 0]
-    size = length[:-1] * length[1:] * np.hypot(*(way[:-1] + way[1:]).T)
+    """Return how far to the left (n,) of the middle of the chord from each position (n, 2) of lines to the next a smooth way would be, as
+    the lines turn at both ends."""
+    chord = np.diff(plan, axis=0)
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    turn = chord[:-1, 0] * chord[1:, 1] - chord[:-1, 1] * chord[1:, 0]
+    size = length[:-1] * length[1:] * np.hypot(*(chord[:-1] + chord[1:]).T)
     bend = np.divide(
         2.0 * turn, size, out=np.zeros(len(turn)), where=(size > 0.0) & (line[2:] == line[:-2])
     )
@@ -477,9 +487,9 @@ def _middles(
 ) -> tuple[Floats, Floats, Bools]:
     """Return the directions (n, 2) to the left of chords, which have what is blocked on their right, how far the rim is from their middles
     that way (n,), expected `off` (n,), and whether one is found."""
-    way, middle = end - start, 0.5 * (start + end)
-    length = np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)
-    left = np.column_stack([-way[:, 1], way[:, 0]]) / length[:, None]
+    along, middle = end - start, 0.5 * (start + end)
+    length = np.maximum(np.hypot(along[:, 0], along[:, 1]), CLOSE)
+    left = np.column_stack([-along[:, 1], along[:, 0]]) / length[:, None]
     off, found, rows = (
         np.clip(off, -0.5 * length, 0.5 * length),
         np.zeros(len(z)),
@@ -524,11 +534,11 @@ def _in_order(loops: list[_Loop], tool: Tool, *, both: bool) -> list[Pass]:
 
 
 def _pass(loop: _Loop, *, turned: bool) -> Pass:
-    way = np.diff(loop.plan, axis=0)
-    way /= np.maximum(np.hypot(way[:, 0], way[:, 1]), CLOSE)[:, None]
+    direction = np.diff(loop.plan, axis=0)
+    direction /= np.maximum(np.hypot(direction[:, 0], direction[:, 1]), CLOSE)[:, None]
     before, after = (
-        np.vstack([way[-1:] if loop.closed else way[:1], way]),
-        np.vstack([way, way[:1] if loop.closed else way[-1:]]),
+        np.vstack([direction[-1:] if loop.closed else direction[:1], direction]),
+        np.vstack([direction, direction[:1] if loop.closed else direction[-1:]]),
     )
     ahead = before + after
     ahead[np.hypot(ahead[:, 0], ahead[:, 1]) < CLOSE] = after[

@@ -16,7 +16,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
 from trunnion.part.shape.surfaces import Surfaces
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.contact.grid import Grid as Grid
 from trunnion.verify.contact.grid import grid_of as grid_of
@@ -37,19 +37,19 @@ POSES = 1024
 class Contact:
     """What was measured. n moves, f faces; column 0 is what cuts, column 1 what does not (neck, shank, holder).
 
-    depth (n, 2) mm, 0 when clear; face (n, 2) rows of the deepest face or -1; place (n, 2, 3) where, NaN when clear; face_depth (f, 2),
+    depth (n, 2) mm, 0 when clear; face (n, 2) rows of the deepest face or -1; position (n, 2, 3) where, NaN when clear; face_depth (f, 2),
     face_move (f, 2) the move that is deepest in each face (of equal ones the first) or -1. fixture_depth (n,) how deep any part of the
-    tool enters a fixture, 0 when clear; fixture (n,) its row or -1; fixture_place (n, 3), NaN when clear.
+    tool enters a fixture, 0 when clear; fixture (n,) its row or -1; fixture_position (n, 3), NaN when clear.
     """
 
     depth: Floats
     face: Ints
-    place: Floats
+    position: Floats
     face_depth: Floats
     face_move: Ints
     fixture_depth: Floats
     fixture: Ints
-    fixture_place: Floats
+    fixture_position: Floats
 
 
 class PartContact:
@@ -77,7 +77,7 @@ class PartContact:
         )
         self._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
 
-    def along(self, moves: Moves, progress: Progress = QUIET, threads: int = 0) -> Contact:
+    def along(self, moves: Moves, progress: Progress = NO_PROGRESS, threads: int = 0) -> Contact:
         """Return how deep every move of a program enters part and fixtures, measured on `threads` threads (0: one a core)."""
         found, rows = Penetration.none(len(moves), len(self.surfaces.tag)), np.arange(len(moves))
         engines = [*self._engines(moves), *([(self._fixtures, rows)] if self._fixtures else [])]
@@ -92,26 +92,26 @@ class PartContact:
         )
         fixed = Penetration.none(len(moves), 0)
         for k, (engine, some) in enumerate(engines):
-            touch = engine.along(
+            penetration = engine.along(
                 moves,
                 some,
                 progress.part(cost[k] / max(cost[-1], 1.0), cost[k + 1] / max(cost[-1], 1.0)),
                 threads,
             )
             if engine is self._fixtures:
-                fixed = touch
+                fixed = penetration
             else:
-                found.take(touch, some)
+                found.take(penetration, some)
         kind = np.argmax(fixed.depth, axis=1)
         return Contact(
             depth=np.maximum(found.depth, 0.0),
             face=found.face,
-            place=found.place,
+            position=found.position,
             face_depth=np.maximum(found.face_depth, 0.0),
             face_move=found.face_move,
             fixture_depth=np.maximum(fixed.depth[rows, kind], 0.0),
             fixture=fixed.face[rows, kind],
-            fixture_place=fixed.place[rows, kind],
+            fixture_position=fixed.position[rows, kind],
         )
 
     def clear(self, moves: Moves, allowed: float) -> Bools:
@@ -119,16 +119,16 @@ class PartContact:
         return np.isnan(self.stopped(moves, allowed)[:, 0])
 
     def stopped(self, moves: Moves, allowed: float) -> Floats:
-        """Return a place (n, 3) of part or fixtures, on it, where something of the tool of each move or pose is deeper than allowed, or
-        beside the deepest such place; NaN where there is none."""
-        place = np.full((len(moves), 3), np.nan)
+        """Return a position (n, 3) of part or fixtures, on it, where something of the tool of each move or pose is deeper than allowed, or
+        beside the deepest such position; NaN where there is none."""
+        position = np.full((len(moves), 3), np.nan)
         engines = self._engines(moves) + (
             [(self._fixtures, np.arange(len(moves)))] if self._fixtures else []
         )
         for engine, rows in engines:
-            still = rows[np.isnan(place[rows, 0])]
-            place[still] = engine.stopped(moves, still, allowed)
-        return place
+            still = rows[np.isnan(position[rows, 0])]
+            position[still] = engine.stopped(moves, still, allowed)
+        return position
 
     def any_clear(
         self,
@@ -138,13 +138,13 @@ class PartContact:
         wanted: Bools,
         allowed: float,
         obstacles: Obstacles,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
         text: str = "",
         threads: int = 0,
     ) -> Bools:
-        """Return for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
+        """Return for k positions whether one of the poses (k, a, 3) of a tool that are wanted (k, a) is clear as `clear` has it.
 
-        Much quicker where most poses are stopped: `obstacles`, those of the k places, remembers by what, for the next tool too. The part
+        Much quicker where most poses are stopped: `obstacles`, those of the k positions, remembers by what, for the next tool too. The part
         must have no fixtures, and poses that lean need its facets.
         """
         if self._fixtures is not None:
@@ -173,13 +173,13 @@ class PartContact:
             ]
             if len(some):
                 progress.check()
-                place = self.stopped(
+                position = self.stopped(
                     poses_of(tool, tips[row[some], pose[some]], axes[row[some], pose[some]]),
                     allowed,
                 )
                 progress.check()
-                obstacles.add(place, row[some])
-                found[row[some[np.isnan(place[:, 0])]]] = True
+                obstacles.add(position, row[some])
+                found[row[some[np.isnan(position[:, 0])]]] = True
         return found
 
     def _engines(self, moves: Moves) -> list[tuple[StripContact | FacetContact, Ints]]:

@@ -18,7 +18,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact.obstacles import Obstacles
 from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.cutter import bodies_of_one
@@ -32,8 +32,8 @@ CHUNK = 100
 """Moves between two looks at cancel, fewer when they are long."""
 SHORT = 10.0
 """mm: a move so much longer than this counts as several."""
-PLACES = 16
-"""Places whose poses are tried between two looks at cancel: some tens of milliseconds when nothing is known of what is in the way."""
+BATCH = 16
+"""Positions whose poses are tried between two looks at cancel: some tens of milliseconds when nothing is known of what is in the way."""
 LEAF = 4
 """Most triangles of a leaf."""
 
@@ -112,7 +112,7 @@ class FacetContact:
         return self.tree
 
     def along(
-        self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
+        self, moves: Moves, rows: Ints, progress: Progress = NO_PROGRESS, threads: int = 0
     ) -> Penetration:
         """Return how deep the moves of some rows (k,) enter the faces, whichever way the tool stands."""
         return self._measure(moves, rows, progress, threads)
@@ -120,7 +120,7 @@ class FacetContact:
     def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
         """Return a position (k, 3) of the faces that the tool enters deeper than allowed, for the moves of some rows (k,); NaN where
         none."""
-        return self._measure(moves, rows, QUIET, 1, allowed).deeper_than(allowed)
+        return self._measure(moves, rows, NO_PROGRESS, 1, allowed).deeper_than(allowed)
 
     def any_clear(
         self,
@@ -130,13 +130,13 @@ class FacetContact:
         wanted: Bools,
         allowed: float,
         obstacles: Obstacles,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
         text: str = "",
         threads: int = 0,
     ) -> Bools:
-        """Return for k places whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
+        """Return for k positions whether one of the poses (k, a, 3) of a tool that are wanted (k, a) enters no face deeper than allowed.
 
-        `obstacles` are the places'; what stops a pose is added to them.
+        `obstacles` are the positions'; what stops a pose is added to them.
         """
         tree, bodies, found = self._ready(progress), bodies_of_one(tool), np.zeros(len(tips), bool)
 
@@ -158,12 +158,12 @@ class FacetContact:
                 len(self.facets.tag),
                 allowed,
                 tolerance.CONTACT_BOUND,
-                obstacles.place,
+                obstacles.position,
                 obstacles.count,
                 found,
             )
 
-        in_parallel(some, len(tips), PLACES, progress, text, threads)
+        in_parallel(some, len(tips), BATCH, progress, text, threads)
         return found
 
     def _measure(
@@ -172,10 +172,10 @@ class FacetContact:
         tree, bodies, k, f = self._ready(progress), moves.bodies, len(rows), len(self.facets.tag)
         bound = np.where(moves.turning[rows], tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
         enough = np.full(k, settle) if np.isfinite(settle) else bound
-        touch = Penetration(
+        penetration = Penetration(
             depth=np.full((k, 2), -np.inf),
             face=np.full((k, 2), -1),
-            place=np.full((k, 2, 3), np.nan),
+            position=np.full((k, 2, 3), np.nan),
             face_depth=np.full((f, 2), -np.inf),
             face_move=np.full((f, 2), -1),
         )
@@ -210,14 +210,14 @@ class FacetContact:
                 bound,
                 enough,
                 settle,
-                touch.depth,
-                touch.face,
-                touch.place,
+                penetration.depth,
+                penetration.face,
+                penetration.position,
                 face_depth,
                 face_move,
             )
             with merging:
-                deepen(touch.face_depth, touch.face_move, face_depth, face_move)
+                deepen(penetration.face_depth, penetration.face_move, face_depth, face_move)
 
         in_parallel(
             work,
@@ -227,7 +227,7 @@ class FacetContact:
             "Measuring gouges and collisions of leaning tools",
             threads,
         )
-        return touch
+        return penetration
 
 
 def _starts(cost: Floats) -> Ints:

@@ -13,13 +13,13 @@ from trunnion.geometry.arrays import Floats, Ints
 class Penetration:
     """How deep some moves enter faces. k moves, f faces; column 0 is what cuts, column 1 what does not.
 
-    depth (k, 2) mm, -inf when clear; face (k, 2) rows of the deepest face or -1; place (k, 2, 3) where, NaN when clear; face_depth (f, 2),
-    face_move (f, 2) the row of the move that is deepest in each face (of equal ones the first), or -1.
+    depth (k, 2) mm, -inf when clear; face (k, 2) rows of the deepest face or -1; position (k, 2, 3) where, NaN when clear; face_depth (f,
+    2), face_move (f, 2) the row of the move that is deepest in each face (of equal ones the first), or -1.
     """
 
     depth: Floats
     face: Ints
-    place: Floats
+    position: Floats
     face_depth: Floats
     face_move: Ints
 
@@ -29,7 +29,7 @@ class Penetration:
         return Penetration(
             depth=np.full((k, 2), -np.inf),
             face=np.full((k, 2), -1),
-            place=np.full((k, 2, 3), np.nan),
+            position=np.full((k, 2, 3), np.nan),
             face_depth=np.full((f, 2), -np.inf),
             face_move=np.full((f, 2), -1),
         )
@@ -38,10 +38,10 @@ class Penetration:
         """Take in what another engine measured for the moves of some rows (k,) on the same faces."""
         deeper = other.depth > self.depth[rows]
         at, kind = rows[np.nonzero(deeper)[0]], np.nonzero(deeper)[1]
-        self.depth[at, kind], self.face[at, kind], self.place[at, kind] = (
+        self.depth[at, kind], self.face[at, kind], self.position[at, kind] = (
             other.depth[deeper],
             other.face[deeper],
-            other.place[deeper],
+            other.position[deeper],
         )
         deepen(self.face_depth, self.face_move, other.face_depth, other.face_move)
 
@@ -49,7 +49,9 @@ class Penetration:
         """Return where each move is deepest (k, 3), NaN where that is not deeper than allowed."""
         kind = np.argmax(self.depth, axis=1)
         rows = np.arange(len(kind))
-        return np.where((self.depth[rows, kind] > allowed)[:, None], self.place[rows, kind], np.nan)
+        return np.where(
+            (self.depth[rows, kind] > allowed)[:, None], self.position[rows, kind], np.nan
+        )
 
 
 def deepen(face_depth: Floats, face_move: Ints, depth: Floats, move: Ints) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import PartContact
 from trunnion.verify.cutter import bodies_of
 from trunnion.verify.kernels.contact import strips as columns
@@ -59,7 +59,7 @@ def pose_clearance(
     most_plunge: float = 100.0,
     longest: float | None = None,
     allowed: float = tolerance.GOUGE,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> PoseClearance:
     """Return what poses of one tool may do: tips (k, 3), unit axes (k, 3), queried all together.
 
@@ -158,16 +158,16 @@ def _leans(
         (start, first), (end, last) = leaned(rows, a), leaned(rows, b)
         return query(start, end, first, last)
 
-    reached, going = np.zeros(len(tip)), clear.copy()
+    reached, advancing = np.zeros(len(tip)), clear.copy()
     steps = max(1, math.ceil(most / STEP - tolerance.PARAMETRIC))
     blocked = np.zeros(len(tip), bool)
     for k in range(steps):
-        rows = np.flatnonzero(going)
+        rows = np.flatnonzero(advancing)
         fits = between(
             rows, np.full(len(rows), most * k / steps), np.full(len(rows), most * (k + 1) / steps)
         )
         reached[rows[fits]] = most * (k + 1) / steps
-        going[rows[~fits]], blocked[rows[~fits]] = False, True
+        advancing[rows[~fits]], blocked[rows[~fits]] = False, True
     start = reached.copy()
     more = _furthest(
         lambda rows, by: between(rows, start[rows], start[rows] + by),
@@ -214,8 +214,8 @@ def _stickouts(query: _MotionQuery, tip: Floats, axis: Floats, longest: float) -
     while len(some):
         middle = (low[some] + high[some]) // 2
         good = np.zeros(len(some), bool)
-        ask_them = middle > low[some]
-        good[ask_them] = fits(some[ask_them], middle[ask_them])
+        unsettled = middle > low[some]
+        good[unsettled] = fits(some[unsettled], middle[unsettled])
         high[some[good]] = middle[good]
         low[some[~good]] = np.maximum(middle[~good], low[some[~good]])
         some = some[high[some] - low[some] > 1]

@@ -1,7 +1,7 @@
 """Closed forms: a body of revolution that stands upright, against faces that are strips and level regions (`part/shape/surfaces.py`).
 
 Closed forms in plan and a bounded search over the profile (`kernels/contact/strips.py`): a reported depth is attained, and the true one is
-at most `tolerance.CONTACT_BOUND` deeper. A move along its own axis counts as one body, swept from its lowest to its highest place.
+at most `tolerance.CONTACT_BOUND` deeper. A move along its own axis counts as one body, swept from its lowest to its highest position.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from trunnion.part.shape.surfaces import (
     U1,
     Surfaces,
 )
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact.grid import Grid, grid_of
 from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.kernels.contact import strips as kernel
@@ -77,21 +77,21 @@ class StripContact:
         self._cell_z = _heights(self._grid, surfaces.strip[:, [BZ0, BZ1]])
 
     def along(
-        self, moves: Moves, rows: Ints, progress: Progress = QUIET, threads: int = 0
+        self, moves: Moves, rows: Ints, progress: Progress = NO_PROGRESS, threads: int = 0
     ) -> Penetration:
         """Return how deep the moves of some rows (k,) enter the faces; they must stand upright."""
         found = self._measure(moves, rows, progress, threads)
-        return progress.aside(lambda _: self._touch(moves, rows, found))
+        return progress.aside(lambda _: self._penetration(moves, rows, found))
 
     def stopped(self, moves: Moves, rows: Ints, allowed: float) -> Floats:
         """Return a position (k, 3) of the faces about where the tool enters them deeper than allowed, for the moves of some rows (k,),
         which must stand upright; NaN where it doesn't."""
-        return self._touch(moves, rows, self._measure(moves, rows, QUIET, 1, allowed)).deeper_than(
-            allowed
-        )
+        return self._penetration(
+            moves, rows, self._measure(moves, rows, NO_PROGRESS, 1, allowed)
+        ).deeper_than(allowed)
 
-    def _touch(self, moves: Moves, rows: Ints, found: _Measured) -> Penetration:
-        s, face, place = (
+    def _penetration(self, moves: Moves, rows: Ints, found: _Measured) -> Penetration:
+        s, face, position = (
             self.surfaces,
             np.full((len(rows), 2), -1),
             np.full((len(rows), 2, 3), np.nan),
@@ -106,12 +106,12 @@ class StripContact:
             s.region_z,
             s.region_face,
             face,
-            place,
+            position,
         )
         return Penetration(
             depth=found.depth,
             face=face,
-            place=place,
+            position=position,
             face_depth=found.face_depth,
             face_move=found.face_move,
         )

@@ -1,7 +1,7 @@
 """Accessibility: the points of the part that some cutter of the catalogue reaches, upright from above or tilted on rotary axes.
 
-A place that nothing reaches is settled only when every pose of every cutter is stopped. What stopped one stops most of the others, so each
-place remembers its obstacles (`contact/obstacles.py`), and few poses are held against the whole part.
+A position that nothing reaches is settled only when every pose of every cutter is stopped. What stopped one stops most of the others, so
+each position remembers its obstacles (`contact/obstacles.py`), and few poses are held against the whole part.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine
 from trunnion.model.tool import PLAIN_FORMS, Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import Obstacles, PartContact
 from trunnion.verify.finish.coverage import Samples
 from trunnion.verify.finish.tilted_poses import leaning_axes, touching_tips
@@ -27,7 +27,7 @@ MOST_TRIED = 3000
 MOST_LEANING = 200
 """The same for leaning cutters, which are tried in many more poses."""
 AROUND = 8
-"""Directions in which a flat end stands aside from a place on a level face."""
+"""Directions in which a flat end stands aside from a position on a level face."""
 ASIDE = (1.0, 0.5)
 """Shares of its flat end's radius by which it does."""
 
@@ -54,7 +54,7 @@ class Accessibility:
         plain = [t for t in tools if t.form in PLAIN_FORMS]
         self._tools = sorted(reaching_furthest(plain), key=lambda t: (t.radius, -t.reach, t.number))
 
-    def reached(self, samples: Samples, rows: Ints, progress: Progress = QUIET) -> Bools:
+    def reached(self, samples: Samples, rows: Ints, progress: Progress = NO_PROGRESS) -> Bools:
         """Return for each of the samples' rows whether some cutter reaches it.
 
         Of very many rows, evenly chosen ones of every face are tried, and the others share the result of the nearest on their face.
@@ -110,7 +110,7 @@ class Accessibility:
             rows = np.flatnonzero(~found)
             if not len(rows):
                 break
-            tips, axes, possible = _poses_asked(poses, tool, rows, share)
+            tips, axes, possible = _query_poses(poses, tool, rows, share)
             known = obstacles.of(rows)
             found[rows] = self._contact.any_clear(
                 tool, tips, axes, possible, self._allowed, known, share, text, self._threads
@@ -119,7 +119,7 @@ class Accessibility:
         return found
 
 
-def _poses_asked(
+def _query_poses(
     poses: Callable[[Tool, Ints], tuple[Floats, Floats, Bools]],
     tool: Tool,
     rows: Ints,
@@ -177,7 +177,7 @@ def leaning_poses(
 
 
 def _shared(
-    ask: Callable[[Samples, Ints, Progress], Bools],
+    query: Callable[[Samples, Ints, Progress], Bools],
     samples: Samples,
     rows: Ints,
     most: int,
@@ -185,12 +185,14 @@ def _shared(
 ) -> Bools:
     """Return what is answered for rows, of very many only for evenly chosen ones: the others share the nearest answer on their face."""
     tried = _tried(samples.face[rows], most)
-    answer = ask(samples, rows[tried], progress)
+    result = query(samples, rows[tried], progress)
     if len(tried) == len(rows):
-        return answer
+        return result
     # Faces are distinguished by a fourth coordinate longer than any part.
-    place = np.column_stack([samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)])
-    return np.asarray(answer[progress.aside(lambda _: cKDTree(place[tried]).query(place)[1])])
+    position = np.column_stack(
+        [samples.point[rows], samples.face[rows] * 4.0 * np.ptp(samples.point)]
+    )
+    return np.asarray(result[progress.aside(lambda _: cKDTree(position[tried]).query(position)[1])])
 
 
 def reaching_furthest(tools: Sequence[Tool]) -> list[Tool]:

@@ -32,7 +32,7 @@ from trunnion.part.shape.surfaces import (
     U1,
     Surfaces,
 )
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import guide_points
 
 MOST_SAMPLES = 4_000_000
@@ -53,7 +53,10 @@ class Samples:
 
 
 def samples_of(
-    surfaces: Surfaces, spacing: float, progress: Progress = QUIET, facets: Facets | None = None
+    surfaces: Surfaces,
+    spacing: float,
+    progress: Progress = NO_PROGRESS,
+    facets: Facets | None = None,
 ) -> Samples:
     """Return samples about `spacing` mm apart on every face, the same ones each time; no face is without one.
 

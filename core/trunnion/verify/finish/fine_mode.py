@@ -19,9 +19,9 @@ from scipy.spatial import cKDTree
 from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.shape.exact import ExactPoints
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.sweep import flutes_of, tree_of
-from trunnion.verify.kernels import residual as left_kernel
+from trunnion.verify.kernels import residual as residual_kernel
 from trunnion.verify.kernels import residual_bounds as kernel
 from trunnion.verify.kernels.residual import Flutes, SpanTree
 from trunnion.verify.motion import Moves
@@ -39,7 +39,7 @@ ROUNDS = 40
 """Times that cells are quartered at most: to nothing."""
 ARRAYS = tuple(ExactPoints.__slots__)
 CLIMB, CLIMBS = 7, 12
-"""Places along each side of a grid that closes in on a ridge, and how often: a cell's side is then known to a hundred-thousandth."""
+"""Positions along each side of a grid that closes in on a ridge, and how often: a cell's side is then known to a hundred-thousandth."""
 LIFTS = 3
 """Times a surface is lifted to the height of its ridges: the second one changes nothing but the bound."""
 
@@ -52,11 +52,11 @@ class FineFace(Protocol):
     def bounds(self) -> tuple[float, float, float, float]:
         """Return the least and greatest u and v."""
 
-    def inside(self, places: Floats) -> Bools:
-        """Return which places (k, 2) lie inside the trim."""
+    def inside(self, uv: Floats) -> Bools:
+        """Return which uv (k, 2) lie inside the trim."""
 
-    def at(self, places: Floats) -> ExactPoints:
-        """Return the surface at places (k, 2)."""
+    def at(self, uv: Floats) -> ExactPoints:
+        """Return the surface at uv (k, 2)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -64,7 +64,7 @@ class ExtremeFigure:
     """A figure in mm and where it is attained (3,), by which move (-1: none)."""
 
     value: float
-    place: Floats
+    position: Floats
     move: int
 
 
@@ -74,7 +74,7 @@ class FineMap:
 
     scallop: how high the highest ridge stands along the normals, or the most left where that is `FAR`; gouge: how deep the deepest cut is,
     0 when none; both within `bound` mm. step: the largest difference in height where two operations or faces meet, with the move of the
-    lower side. m samples about `spacing` apart for a map: face tags (m,), point and outward normal (m, 3), left (m,) mm, negative below
+    lower side. m samples about `spacing` apart for a map: face tags (m,), point and outward normal (m, 3), residual (m,) mm, negative below
     the surface, nearest (m,) move rows or -1, area (m,) mm2.
     """
 
@@ -85,7 +85,7 @@ class FineMap:
     face: Ints
     point: Floats
     normal: Floats
-    left: Floats
+    residual: Floats
     nearest: Ints
     area: Floats
 
@@ -125,12 +125,12 @@ def fine_measure(
     high: Floats | None = None,
     window: float = 1.0,
     bound: float = FINE_BOUND,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     threads: int = 0,
 ) -> FineMap:
     """Return scallop, gouge and steps on faces (within the box from `low` to `high` (3,) when given), all in the frame of the moves.
 
-    Cells begin about `spacing` mm wide. `window` mm is how far beside a seam the lowest places of both sides are compared: as far as two
+    Cells begin about `spacing` mm wide. `window` mm is how far beside a seam the lowest positions of both sides are compared: as far as two
     passes are apart at least. Raises `BadInput` when there is nothing to measure, `OutOfMemory` when the patch is too large.
     """
     flutes = flutes_of(moves)
@@ -151,20 +151,22 @@ def fine_measure(
     labels = np.column_stack([row, move_of[first.nearest[held]]])
     return FineMap(
         scallop=scallop,
-        gouge=ExtremeFigure(value=max(-least.value, 0.0), place=least.place, move=least.move),
-        step=_step(at.point[held], labels, first.left[held], first.nearest[held], spacing, window),
+        gouge=ExtremeFigure(value=max(-least.value, 0.0), position=least.position, move=least.move),
+        step=_step(
+            at.point[held], labels, first.residual[held], first.nearest[held], spacing, window
+        ),
         bound=bound,
         face=np.array([f.tag for f in faces])[row],
         point=at.point[held],
         normal=at.normal[held],
-        left=first.left[held],
+        residual=first.residual[held],
         nearest=first.nearest[held],
         area=cells.area[held],
     )
 
 
 @dataclass(slots=True, eq=False)
-class _Placed:
+class _LocatedCells:
     """Cells with the surface at their middles, and whether those are on the patch (c,)."""
 
     cells: _Cells
@@ -185,7 +187,7 @@ class _Placed:
 class _Looked:
     """What is left at the middles of cells, by which move, and bounds over each cell (c,)."""
 
-    left: Floats
+    residual: Floats
     nearest: Ints
     upper: Floats
     lower: Floats
@@ -242,7 +244,7 @@ class _Patch:
             *(np.concatenate([getattr(m, name) for m in made]) for name in _Cells.__slots__)
         )
 
-    def inside(self, cells: _Cells) -> _Placed:
+    def inside(self, cells: _Cells) -> _LocatedCells:
         """Return the cells that touch the patch."""
         if len(cells) > MOST_CELLS:
             raise OutOfMemory(
@@ -262,17 +264,19 @@ class _Patch:
             )
             mine, at = mine.some(near), _some(at, near)
             within = _within(face, mine, signs)
-            touches = np.asarray(within.any(axis=1))
-            parts.append(mine.some(touches))
-            points.append(_some(at, touches))
-            holds.append((within[:, 0] & self._in_box(at.point, np.zeros((len(mine), 3))))[touches])
+            overlaps = np.asarray(within.any(axis=1))
+            parts.append(mine.some(overlaps))
+            points.append(_some(at, overlaps))
+            holds.append(
+                (within[:, 0] & self._in_box(at.point, np.zeros((len(mine), 3))))[overlaps]
+            )
         joined = ExactPoints(
             **{name: np.concatenate([getattr(p, name) for p in points]) for name in ARRAYS}
         )
         whole = _Cells(
             *(np.concatenate([getattr(m, name) for m in parts]) for name in _Cells.__slots__)
         )
-        return _Placed(whole, joined, np.concatenate(holds))
+        return _LocatedCells(whole, joined, np.concatenate(holds))
 
     def _in_box(self, points: Floats, margin: Floats) -> Bools:
         low = -np.inf if self.low is None else np.asarray(self.low)
@@ -280,11 +284,11 @@ class _Patch:
         return np.asarray(((points >= low - margin) & (points <= high + margin)).all(axis=1))
 
     def look(
-        self, placed: _Placed, lift: float, progress: Progress, least: float = -np.inf
+        self, located: _LocatedCells, lift: float, progress: Progress, least: float = -np.inf
     ) -> _Looked:
         """Return what is left over cells of the surface, lifted along its normals; by how much a cell falls below `least` is not
         reported."""
-        n, at, (u, v) = len(placed.cells), placed.at, placed.cells.half.T
+        n, at, (u, v) = len(located.cells), located.at, located.cells.half.T
         a, b = (
             u[:, None] * (at.du + lift * at.normal_du),
             v[:, None] * (at.dv + lift * at.normal_dv),
@@ -301,7 +305,7 @@ class _Patch:
                 )
                 for t, d in ((at.normal_du, at.du), (at.normal_dv, at.dv))
             )
-        left, nearest, upper, lower = (
+        residual, nearest, upper, lower = (
             np.full(n, FAR),
             np.full(n, -1),
             np.full(n, FAR),
@@ -322,19 +326,19 @@ class _Patch:
                 FAR,
                 least,
                 self.bound,
-                placed.cells.above,
-                left,
+                located.cells.above,
+                residual,
                 nearest,
                 upper,
                 lower,
             )
 
         in_parallel(some, n, CHUNK, progress, "Measuring scallops", self.threads)
-        return _Looked(left, nearest, upper, lower)
+        return _Looked(residual, nearest, upper, lower)
 
     def search(
         self,
-        placed: _Placed,
+        located: _LocatedCells,
         looked: _Looked,
         lift: float,
         wanted: Sequence[_Best],
@@ -343,9 +347,9 @@ class _Patch:
         """Quarter cells until none may beat what is wanted by more than the bound."""
         lowest = -np.inf
         for k in range(ROUNDS):
-            above, below = np.zeros((2, len(placed.cells)), bool)
+            above, below = np.zeros((2, len(located.cells)), bool)
             for best in wanted:
-                if best.raised(placed, looked):
+                if best.raised(located, looked):
                     self.climb(best, lift)
                 lowest = best.value if best.sign < 0.0 else lowest
             for best in wanted:
@@ -357,8 +361,10 @@ class _Patch:
             if not (above | below).any():
                 return
             share = progress.part(1.0 - 0.8**k, 1.0 - 0.8 ** (k + 1))
-            placed = self.inside(replace(placed.cells, above=above).some(above | below).quartered())
-            looked = self.look(placed, lift, share, lowest if lowest > -np.inf else np.inf)
+            located = self.inside(
+                replace(located.cells, above=above).some(above | below).quartered()
+            )
+            looked = self.look(located, lift, share, lowest if lowest > -np.inf else np.inf)
 
     def climb(self, best: _Best, lift: float) -> None:
         """Raise what was found last to the ridge or dip beside it: no middle of a cell lies on one, and what is found decides which cells
@@ -367,13 +373,13 @@ class _Patch:
         share = np.linspace(-1.0, 1.0, CLIMB)
         grid = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
         for _ in range(CLIMBS):
-            places = best.uv + grid * half
-            places = places[face.inside(places)]
-            at = face.at(places)
-            inside = self._in_box(at.point, np.zeros((len(places), 3)))
+            uv = best.uv + grid * half
+            uv = uv[face.inside(uv)]
+            at = face.at(uv)
+            inside = self._in_box(at.point, np.zeros((len(uv), 3)))
             points = (at.point + lift * at.normal)[inside]
-            left, nearest = np.full(len(points), FAR), np.full(len(points), -1)
-            left_kernel.residual_bvh_loop(
+            residual, nearest = np.full(len(points), FAR), np.full(len(points), -1)
+            residual_kernel.residual_bvh_loop(
                 0,
                 len(points),
                 points,
@@ -381,13 +387,13 @@ class _Patch:
                 self.tree,
                 self.flutes,
                 kernel.CLOSE * self.bound,
-                left,
+                residual,
                 nearest,
             )
-            best.take(left, nearest, places[inside], at.point[inside])
+            best.take(residual, nearest, uv[inside], at.point[inside])
             half = 0.4 * half
 
-    def ridge(self, placed: _Placed, most: _Best, progress: Progress) -> ExtremeFigure:
+    def ridge(self, located: _LocatedCells, most: _Best, progress: Progress) -> ExtremeFigure:
         """Return how high the highest ridge stands along the normals: where the lifted surface just leaves all material behind.
 
         The distance to a cutter beside is shorter than the way up along the normal, by the more the steeper the ridge.
@@ -399,8 +405,8 @@ class _Patch:
             share = progress.part(k / LIFTS, (k + 1) / LIFTS)
             over = _Best(1.0)
             self.search(
-                placed,
-                self.look(placed, height, share.part(0.0, 0.5), np.inf),
+                located,
+                self.look(located, height, share.part(0.0, 0.5), np.inf),
                 height,
                 (over,),
                 share.part(0.5, 1.0),
@@ -409,21 +415,21 @@ class _Patch:
                 height, best = height + over.value, over
             if over.value <= self.bound:
                 break
-        return ExtremeFigure(value=height, place=best.place, move=best.move)
+        return ExtremeFigure(value=height, position=best.position, move=best.move)
 
 
 def _within(face: FineFace, cells: _Cells, signs: Floats) -> Bools:
-    """Return which places (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
+    """Return which uv (c, s), at signs (s, 2) times the half sides from the middle, lie inside the trim of the face that cells are on.
 
-    All cells of a face are of one size, and neighbours share corners: each place is evaluated once.
+    All cells of a face are of one size, and neighbours share corners: each position is evaluated once.
     """
     if not len(cells):
         return np.zeros((0, len(signs)), bool)
     u0, _, v0, _ = face.bounds()
     start, half = np.array([u0, v0]), cells.half[0]
     steps = np.rint((cells.uv[:, None] - start) / half + signs)
-    place, row = np.unique(steps[..., 0] + 1j * steps[..., 1], return_inverse=True)
-    inside = face.inside(start + np.column_stack([place.real, place.imag]) * half)
+    position, row = np.unique(steps[..., 0] + 1j * steps[..., 1], return_inverse=True)
+    inside = face.inside(start + np.column_stack([position.real, position.imag]) * half)
     return np.asarray(inside[row.reshape(len(cells), len(signs))])
 
 
@@ -432,32 +438,40 @@ def _some(at: ExactPoints, rows: Bools) -> ExactPoints:
 
 
 class _Best:
-    """The most (sign 1) or least (sign -1) found, with its place on its face, and the half sides of its cell."""
+    """The most (sign 1) or least (sign -1) found, with its position on its face, and the half sides of its cell."""
 
     def __init__(self, sign: float) -> None:
-        self.value, self.place, self.move, self.sign = -sign * np.inf, np.full(3, np.nan), -1, sign
+        self.value, self.position, self.move, self.sign = (
+            -sign * np.inf,
+            np.full(3, np.nan),
+            -1,
+            sign,
+        )
         self.face, self.uv, self.half = -1, np.full(2, np.nan), np.zeros(2)
 
-    def raised(self, placed: _Placed, looked: _Looked) -> bool:
+    def raised(self, located: _LocatedCells, looked: _Looked) -> bool:
         """Take what is left at the cells' middles into account; return whether that changed anything."""
-        rows = np.flatnonzero(placed.holds)
+        rows = np.flatnonzero(located.holds)
         if not len(rows) or not self.take(
-            looked.left[rows], looked.nearest[rows], placed.cells.uv[rows], placed.at.point[rows]
+            looked.residual[rows],
+            looked.nearest[rows],
+            located.cells.uv[rows],
+            located.at.point[rows],
         ):
             return False
-        row = rows[np.argmax(self.sign * looked.left[rows])]
-        self.face, self.half = int(placed.cells.face[row]), placed.cells.half[row]
+        row = rows[np.argmax(self.sign * looked.residual[rows])]
+        self.face, self.half = int(located.cells.face[row]), located.cells.half[row]
         return True
 
-    def take(self, left: Floats, nearest: Ints, uv: Floats, point: Floats) -> bool:
-        """Take what is left (k,) at places uv (k, 2) of one face into account."""
-        if not len(left):
+    def take(self, residual: Floats, nearest: Ints, uv: Floats, point: Floats) -> bool:
+        """Take what is residual (k,) at positions uv (k, 2) of one face into account."""
+        if not len(residual):
             return False
-        row = int(np.argmax(self.sign * left))
-        if self.sign * left[row] <= self.sign * self.value:
+        row = int(np.argmax(self.sign * residual))
+        if self.sign * residual[row] <= self.sign * self.value:
             return False
-        self.value, self.place, self.move, self.uv = (
-            float(left[row]),
+        self.value, self.position, self.move, self.uv = (
+            float(residual[row]),
             point[row],
             int(nearest[row]),
             uv[row],
@@ -466,14 +480,14 @@ class _Best:
 
     def extreme(self) -> ExtremeFigure:
         """Return it as a figure."""
-        return ExtremeFigure(value=self.value, place=self.place, move=self.move)
+        return ExtremeFigure(value=self.value, position=self.position, move=self.move)
 
 
 def _step(
-    point: Floats, label: Ints, left: Floats, nearest: Ints, spacing: float, window: float
+    point: Floats, label: Ints, residual: Floats, nearest: Ints, spacing: float, window: float
 ) -> ExtremeFigure:
     """Return the largest difference between the lowest positions on both sides of a seam, where neighbours have other labels (m, 2)."""
-    none = ExtremeFigure(value=0.0, place=np.full(3, np.nan), move=-1)
+    none = ExtremeFigure(value=0.0, position=np.full(3, np.nan), move=-1)
     if len(point) < 2:
         return none
     tree = cKDTree(point)
@@ -492,9 +506,9 @@ def _step(
     for row in np.sort(rows):
         around = np.array(tree.query_ball_point(middle[row], window))
         sides = [around[(label[around] == label[k]).all(axis=1)] for k in pairs[row]]
-        lows = [side[np.argmin(left[side])] for side in sides]
-        jump = abs(float(left[lows[0]] - left[lows[1]]))
+        lows = [side[np.argmin(residual[side])] for side in sides]
+        jump = abs(float(residual[lows[0]] - residual[lows[1]]))
         if jump > best.value:
-            lower = lows[int(left[lows[0]] > left[lows[1]])]
-            best = ExtremeFigure(value=jump, place=middle[row], move=int(nearest[lower]))
+            lower = lows[int(residual[lows[0]] > residual[lows[1]])]
+            best = ExtremeFigure(value=jump, position=middle[row], move=int(nearest[lower]))
     return best

@@ -13,7 +13,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import PLAIN_FORMS
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import Grid, grid_of
 from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels import body
@@ -31,7 +31,7 @@ SPAN = 8.0
 """mm that a point of the cutter moves in one span of the tree: longer ones are met by too many points that they don't touch."""
 MOST_SPANS = 64
 """Most spans of one move, so that memory stays linear in moves."""
-LEFT_BOUND = tolerance.CONTACT_BOUND / 4
+RESIDUAL_BOUND = tolerance.CONTACT_BOUND / 4
 """How much smaller than reported a distance may be, mm."""
 FAR_BOUND = 0.01
 """The same for distances beyond what is listed by cells: nothing is finished there, and mean and largest are reported in hundredths."""
@@ -65,7 +65,7 @@ class Sweep:
     bound: float
 
     @staticmethod
-    def of(moves: Moves, near: float, bound: float = LEFT_BOUND) -> Sweep:
+    def of(moves: Moves, near: float, bound: float = RESIDUAL_BOUND) -> Sweep:
         """Return the sweep of a setup's feed moves."""
         cutter = moves.cutters
         low = np.minimum(moves.row[:, columns.Z_START], moves.row[:, columns.Z_END])
@@ -86,14 +86,14 @@ class Sweep:
             bound,
         )
 
-    def left(
-        self, points: Floats, most: Floats, progress: Progress = QUIET, threads: int = 0
+    def residual(
+        self, points: Floats, most: Floats, progress: Progress = NO_PROGRESS, threads: int = 0
     ) -> tuple[Floats, Ints]:
         """Return the smallest signed distance (s,) of points (s, 3) to what cuts over all feed moves, and the move (-1: none).
 
         Distances above `most` (s,) come back as it. Those above `near` are within `FAR_BOUND` where an upright move is nearest.
         """
-        left, nearest = np.array(most, dtype=np.float64), np.full(len(points), -1)
+        residual, nearest = np.array(most, dtype=np.float64), np.full(len(points), -1)
         points, g = np.ascontiguousarray(points, dtype=np.float64), self.grid
         # Neighbours in plan look at the same moves: visiting them together keeps those in the cache.
         order = progress.aside(lambda _: _by_cell(points, g), "Measuring material left")
@@ -114,7 +114,7 @@ class Sweep:
                 self.tree,
                 self.flutes,
                 self.bound,
-                left,
+                residual,
                 nearest,
             )
 
@@ -122,15 +122,20 @@ class Sweep:
             some, len(points), CHUNK, progress.part(0.0, 0.7), "Measuring material left", threads
         )
         self._look_further(
-            points, order[left[order] > self.near], left, nearest, progress.part(0.7, 1.0), threads
+            points,
+            order[residual[order] > self.near],
+            residual,
+            nearest,
+            progress.part(0.7, 1.0),
+            threads,
         )
-        return left, nearest
+        return residual, nearest
 
     def _look_further(
         self,
         points: Floats,
         rows: Ints,
-        left: Floats,
+        residual: Floats,
         nearest: Ints,
         progress: Progress,
         threads: int,
@@ -150,7 +155,7 @@ class Sweep:
                 tree,
                 self.flutes,
                 max(FAR_BOUND, self.bound),
-                left,
+                residual,
                 nearest,
             )
 
@@ -180,7 +185,7 @@ class Sweep:
                 out,
             )
 
-        in_parallel(some, len(points), CHUNK, QUIET, "", threads)
+        in_parallel(some, len(points), CHUNK, NO_PROGRESS, "", threads)
         return out
 
     def cut_around(self, points: Floats, margin: float, move: int) -> Bools:
@@ -212,17 +217,17 @@ def _by_cell(points: Floats, grid: Grid) -> Ints:
     return np.lexsort((cell[:, 0], cell[:, 1]))
 
 
-def left_by_block(
-    left: Floats, nearest: Ints, n_moves: int, area: Floats | None = None
+def residual_by_block(
+    residual: Floats, nearest: Ints, n_moves: int, area: Floats | None = None
 ) -> BlockResidual:
-    """Return the material left (s,) on samples, gathered by the move (s,) that came nearest to each (-1: none).
+    """Return the material residual (s,) on samples, gathered by the move (s,) that came nearest to each (-1: none).
 
     area (s,) weighs the mean.
     """
     hit = nearest >= 0
     rows, value, weight = (
         nearest[hit],
-        left[hit],
+        residual[hit],
         np.ones(int(hit.sum())) if area is None else area[hit],
     )
     least, most = np.full(n_moves, np.inf), np.full(n_moves, -np.inf)
@@ -297,7 +302,7 @@ def _cutting(bodies: Bodies, tool: int) -> list[Floats]:
 
 def tool_motions(moves: Moves, rows: Ints) -> Floats:
     """Return how the tool moves in space along some moves (k, 18), as `kernels/residual.py` names the columns."""
-    out = np.zeros((len(rows), kernel.WAY_COLUMNS))
+    out = np.zeros((len(rows), kernel.MOTION_COLUMNS))
     a, b = moves.start_axis[rows], moves.end_axis[rows]
     a = np.where(moves.upright[rows, None], [0.0, 0.0, 1.0], a)
     turning = moves.turning[rows] & ~moves.upright[rows]
@@ -334,25 +339,25 @@ def tool_motions(moves: Moves, rows: Ints) -> Floats:
 
 def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
     """Return some moves as spans in trees of poses, one a tool."""
-    way, tool = tool_motions(moves, rows), moves.tool[rows]
-    run = moves.length[rows] + way[:, kernel.TURN] * flutes.middle[tool]
+    motion, tool = tool_motions(moves, rows), moves.tool[rows]
+    run = moves.length[rows] + motion[:, kernel.TURN] * flutes.middle[tool]
     count = np.clip(np.ceil(run / SPAN), 1, MOST_SPANS).astype(np.int64)
     of = np.repeat(np.arange(len(rows)), count)
     within = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
     low, high, middle = within / count[of], (within + 1) / count[of], flutes.middle[tool[of]]
-    pose, reach = kernel.span_poses(way, of, low, high, middle)
+    pose, reach = kernel.span_poses(motion, of, low, high, middle)
     order = np.lexsort((_along_curve(pose[:, :3]), tool[of]))
     of, low, high, pose, reach = of[order], low[order], high[order], pose[order], reach[order]
     used, start = np.unique(tool[of], return_index=True)
-    room = 4 * (len(of) // kernel.BUCKET + len(used))
+    capacity = 4 * (len(of) // kernel.BUCKET + len(used))
     nodes, links, root = (
-        np.zeros((room, 8)),
-        np.zeros((room, 5), np.int64),
+        np.zeros((capacity, 8)),
+        np.zeros((capacity, 5), np.int64),
         np.zeros(len(used), np.int64),
     )
     n = kernel.build_pose_bvh(pose, reach, np.append(start, len(of)), used, nodes, links, root)
     return SpanTree(
-        way,
+        motion,
         rows,
         tool,
         of,

@@ -37,8 +37,8 @@ def touching_tips(tool: Tool, point: Floats, normal: Floats, axis: Floats) -> tu
     along = (normal * axis).sum(axis=1)
     across = normal - along[:, None] * axis
     size = np.linalg.norm(across, axis=1)
-    square, beside = size < np.sin(tolerance.ANGLE), np.abs(along) < np.sin(tolerance.ANGLE)
+    square, is_flank = size < np.sin(tolerance.ANGLE), np.abs(along) < np.sin(tolerance.ANGLE)
     out = np.divide(across, size[:, None], out=np.zeros_like(across), where=~square[:, None])
     tips = point + tool.corner_radius * (normal - axis) + (tool.radius - tool.corner_radius) * out
-    tips -= (0.5 * (tool.flute_length - tool.corner_radius) * beside)[:, None] * axis
+    tips -= (0.5 * (tool.flute_length - tool.corner_radius) * is_flank)[:, None] * axis
     return tips, along > -np.sin(tolerance.ANGLE)

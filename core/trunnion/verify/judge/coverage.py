@@ -15,7 +15,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Deviation, FaceProof
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.accessibility import Accessibility
 from trunnion.verify.finish.coverage import Samples, on_blank
 from trunnion.verify.judge.setups import SetupProof
@@ -46,7 +46,7 @@ def covered(
     tools: Sequence[Tool],
     settings: ProofSettings,
     planned: Collection[int],
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     machines: Sequence[Machine] = (),
 ) -> CoverageResult:
     """Return what all setups together finish of the part.
@@ -58,13 +58,15 @@ def covered(
     frame = sides[0].frame
     n = len(tags)
     progress.at(0.0, "Adding up what is finished")
-    left, blank_face = progress.aside(
+    residual, blank_face = progress.aside(
         lambda _: (blank.depth(samples.point, frame), on_blank(samples, blank, frame, n))
     )
     for p in proofs:
-        left = np.minimum(left, p.left)
-    finished = (np.abs(left) <= settings.tolerance + settings.allowance) & ~blank_face[samples.face]
-    open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (left > 0.0))
+        residual = np.minimum(residual, p.residual)
+    finished = (np.abs(residual) <= settings.tolerance + settings.allowance) & ~blank_face[
+        samples.face
+    ]
+    open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (residual > 0.0))
     lost = np.zeros(len(samples), bool)
     lost[_unreached(samples, open_rows, sides, tools, settings, progress, machines)] = True
     area, done, away = (
@@ -74,7 +76,7 @@ def covered(
     reachable_area = wanted - float(away.sum())
     gouge = np.max([np.zeros(n), *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
     faces = progress.aside(
-        lambda _: _faces(samples, tags, left, area, done, away, gouge, blank_face, set(planned))
+        lambda _: _faces(samples, tags, residual, area, done, away, gouge, blank_face, set(planned))
     )
     coverage = round(float(done.sum()) / wanted, DECIMALS) if wanted and proofs else 0.0
     of_reachable = (
@@ -88,7 +90,7 @@ def covered(
         faces=faces,
         findings=_findings(faces, of_reachable, settings),
         deviation=Deviation(
-            face=tags[samples.face], point=frame.to_world(samples.point), deviation=left
+            face=tags[samples.face], point=frame.to_world(samples.point), deviation=residual
         ),
     )
 
@@ -130,7 +132,7 @@ def _by_face(samples: Samples, weight: Floats, n: int) -> Floats:
 def _faces(
     samples: Samples,
     tags: Ints,
-    left: Floats,
+    residual: Floats,
     area: Floats,
     done: Floats,
     away: Floats,
@@ -140,9 +142,9 @@ def _faces(
 ) -> tuple[FaceProof, ...]:
     n = len(tags)
     least, most = np.full(n, np.inf), np.full(n, -np.inf)
-    np.minimum.at(least, samples.face, left)
-    np.maximum.at(most, samples.face, left)
-    mean = _by_face(samples, samples.area * left, n) / np.maximum(area, tolerance.PARAMETRIC)
+    np.minimum.at(least, samples.face, residual)
+    np.maximum.at(most, samples.face, residual)
+    mean = _by_face(samples, samples.area * residual, n) / np.maximum(area, tolerance.PARAMETRIC)
     least, most = np.where(np.isfinite(least), least, 0.0), np.where(np.isfinite(most), most, 0.0)
     return tuple(
         FaceProof(
@@ -195,9 +197,9 @@ def _findings(
     missed = [f for f in faces if not f.planned and not f.blank_surface]
     if missed:
         unfinished = [f for f in missed if f.area - f.finished > tolerance.AREA]
-        say = warning if unfinished else info
+        make_finding = warning if unfinished else info
         found.append(
-            say(
+            make_finding(
                 "verify.unplanned",
                 f"no operation planned {len(missed)} faces, {len(unfinished)} of them are not finished",
                 *face_tags(f.face for f in missed),

@@ -1,4 +1,5 @@
-"""What is reported of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, place and depth."""
+"""What is reported of a setup: gouges, collisions with part, stock and fixtures, rapids in stock, each with its block, position and
+depth."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 
 MOST_FINDINGS = 5
-"""Places that one operation's finding list names of each kind; the worst come first."""
+"""Positions that one operation's finding list names of each kind; the worst come first."""
 
 
 def setup_findings(proof: SetupProof, tags: Ints, settings: ProofSettings) -> list[Finding]:
@@ -40,7 +41,7 @@ def _gouges(
             error(
                 "verify.gouge",
                 f"{section.operation} cuts {proof.contact.depth[row, 0]:.3f} mm into face "
-                f"{tags[face]} at {position_text(proof.contact.place[row, 0])}",
+                f"{tags[face]} at {position_text(proof.contact.position[row, 0])}",
                 section.operation,
                 block_of(proof, section, row),
                 f"face {tags[face]}",
@@ -67,7 +68,7 @@ def _collisions(
             error(
                 "verify.collision",
                 f"shank or holder of {section.tool.name} enters face {tags[face]} by "
-                f"{proof.contact.depth[row, 1]:.3f} mm at {position_text(proof.contact.place[row, 1])}",
+                f"{proof.contact.depth[row, 1]:.3f} mm at {position_text(proof.contact.position[row, 1])}",
                 section.operation,
                 block_of(proof, section, row),
                 f"face {tags[face]}",
@@ -106,15 +107,15 @@ def _fixtures(
     proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings
 ) -> list[Finding]:
     found = []
-    depth, touched = proof.contact.fixture_depth[rows], proof.contact.fixture[rows]
-    for fixture in _worst(touched, depth, settings.tolerance):
-        row = rows[np.argmax(np.where(touched == fixture, depth, -1.0))]
+    depth, fixture_row = proof.contact.fixture_depth[rows], proof.contact.fixture[rows]
+    for fixture in _worst(fixture_row, depth, settings.tolerance):
+        row = rows[np.argmax(np.where(fixture_row == fixture, depth, -1.0))]
         name = proof.program.setup.fixtures[fixture].name
         found.append(
             error(
                 "verify.fixture",
                 f"{section.tool.name} enters fixture {name} by {proof.contact.fixture_depth[row]:.3f} mm at "
-                f"{position_text(proof.contact.fixture_place[row])}",
+                f"{position_text(proof.contact.fixture_position[row])}",
                 section.operation,
                 block_of(proof, section, row),
                 name,
@@ -138,7 +139,7 @@ def _rapids(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Find
         error(
             "verify.rapid-in-stock",
             f"a rapid of {section.operation} goes {depth[row]:.3f} mm into stock at "
-            f"{position_text(proof.stock.rapid_place[row])}",
+            f"{position_text(proof.stock.rapid_position[row])}",
             section.operation,
             block_of(proof, section, row),
             remedy="lift the rapid, or make it a feed move",

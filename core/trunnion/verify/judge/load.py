@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Material
-from trunnion.model.motion.program import STANDING, ProgramSection
+from trunnion.model.motion.program import STOPPED, ProgramSection
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock import StockRun
@@ -79,19 +79,19 @@ def load_of(
     angle = np.maximum(seen, least_angle(area, radius, flute))
     feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
     rate = np.where(cuts, area, 0.0) * feed / MM_PER_METRE
-    per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STANDING)
+    per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STOPPED)
     chip = per_tooth * np.sin(np.minimum(angle, math.pi / 2.0))
     mean = per_tooth * mean_share(angle)
     power = np.zeros(len(moves))
     if material is not None:
         power = np.where(
-            spindle > STANDING,
+            spindle > STOPPED,
             rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT),
             0.0,
         )
     held = np.divide(area, width, out=np.zeros(len(moves)), where=cuts & (width > 0.0))
     torque = NEWTON_METRES * np.divide(
-        power, spindle, out=np.zeros(len(moves)), where=spindle > STANDING
+        power, spindle, out=np.zeros(len(moves)), where=spindle > STOPPED
     )
     return Load(
         depth=np.minimum(held, run.depth_of_cut),
@@ -135,11 +135,11 @@ def stretched(moves: Moves, removed: Floats, stretch: Floats) -> Floats:
     feeds = ~moves.rapid
     length, volume = np.where(feeds, moves.length, 0.0), np.where(feeds, removed, 0.0)
     # Rapids are given a way that no stretch bridges, along which neither way nor volume grows.
-    room = float(stretch.max(initial=0.0))
-    at = np.concatenate([[0.0], np.cumsum(length + np.where(feeds, 0.0, room))])
+    gap = float(stretch.max(initial=0.0))
+    at = np.concatenate([[0.0], np.cumsum(length + np.where(feeds, 0.0, gap))])
     run, taken = (np.concatenate([[0.0], np.cumsum(v)]) for v in (length, volume))
     spare = 0.5 * np.maximum(stretch - length, 0.0)
     low, high = at[:-1] - spare, at[1:] + spare
-    way = np.interp(high, at, run) - np.interp(low, at, run)
+    distance = np.interp(high, at, run) - np.interp(low, at, run)
     cut = np.interp(high, at, taken) - np.interp(low, at, taken)
-    return np.divide(cut, way, out=np.zeros(len(moves)), where=feeds & (way > 0.0))
+    return np.divide(cut, distance, out=np.zeros(len(moves)), where=feeds & (distance > 0.0))

@@ -8,7 +8,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.verdict import BlockProof, OperationProof, Outcome
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
-from trunnion.verify.finish.sweep import left_by_block
+from trunnion.verify.finish.sweep import residual_by_block
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 
@@ -37,7 +37,7 @@ def operation_proofs(
         failed = gouge > settings.tolerance or collides[rows].any() or rapids.any()
         new_tool = k == 0 or proof.program.sections[k - 1].tool.number != section.tool.number
         removed = float(stock.removed[rows].sum())
-        left = proof.left[served == k]
+        residual = proof.residual[served == k]
         found.append(
             OperationProof(
                 operation=section.operation,
@@ -53,9 +53,11 @@ def operation_proofs(
                 air_share=1.0
                 - _share(float(moves.length[cuts].sum()), float(moves.length[feeds].sum()), 1.0),
                 gouges=_gouges(proof, rows, tags),
-                left_min=float(left.min(initial=np.inf)) if len(left) else 0.0,
-                left_max=float(left.max(initial=-np.inf)) if len(left) else 0.0,
-                left_mean=float(np.average(left, weights=area[served == k])) if len(left) else 0.0,
+                left_min=float(residual.min(initial=np.inf)) if len(residual) else 0.0,
+                left_max=float(residual.max(initial=-np.inf)) if len(residual) else 0.0,
+                left_mean=float(np.average(residual, weights=area[served == k]))
+                if len(residual)
+                else 0.0,
                 engaged=float(stock.engagement[feeds].max(initial=0.0)),
                 engaged_mean=_share(
                     float((stock.engagement * moves.length)[cuts].sum()),
@@ -78,7 +80,7 @@ def operation_proofs(
 
 def block_proof(proof: SetupProof, area: Floats) -> BlockProof:
     """Return what was measured block by block; area (s,) mm2 that each sample represents."""
-    left = left_by_block(proof.left, proof.nearest, len(proof.moves), area)
+    residual = residual_by_block(proof.residual, proof.nearest, len(proof.moves), area)
 
     def small(values: Floats) -> np.ndarray:
         return values.astype(np.float32)
@@ -94,9 +96,9 @@ def block_proof(proof: SetupProof, area: Floats) -> BlockProof:
         depth=small(proof.load.depth),
         rate=small(proof.load.rate),
         power=small(proof.load.power),
-        left_min=small(left.least),
-        left_mean=small(left.mean),
-        left_max=small(left.most),
+        left_min=small(residual.least),
+        left_mean=small(residual.mean),
+        left_max=small(residual.most),
     )
 
 

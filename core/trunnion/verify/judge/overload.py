@@ -48,22 +48,22 @@ def load_findings(
     for k, section in enumerate(proof.program.sections):
         rows = np.flatnonzero((proof.moves.section == k) & ~proof.moves.rapid)
         if len(rows):
-            for said, offered in (
+            for noted, offered in (
                 _power(proof, section, rows, machine, material, settings),
                 _excess(proof, section, rows, material, settings),
                 _air(proof, section, rows, settings),
             ):
-                found += said
+                found += noted
                 offers += offered
     return found, offers
 
 
-def chosen_load(section: ProgramSection, material: Material | None) -> AllowedLoad:
+def allowed_load(section: ProgramSection, material: Material | None) -> AllowedLoad:
     """Return the load that a section's cutting data were chosen for, or the material's tables allow its cutter when that is more."""
     tool = section.cutter
     feed = section.feed or float(section.path.feed.max(initial=0.0))
     area, angle = section.width * section.depth, _angle(section.width, tool.diameter)
-    per_tooth = 0.0 if section.spindle_stands else feed / (tool.teeth * section.spindle)
+    per_tooth = 0.0 if section.spindle_stopped else feed / (tool.teeth * section.spindle)
     chip = per_tooth * math.sin(min(angle, math.pi / 2.0))
     if material is not None:
         area = max(area, material.depth_factor * material.width_factor * tool.diameter**2)
@@ -81,7 +81,7 @@ def _thickest(material: Material, diameter: float) -> float:
     return feed_at([(d, most) for d, _, most in material.feeds], diameter)
 
 
-Said = tuple[list[Finding], list[Offer]]
+LoadFindings = tuple[list[Finding], list[Offer]]
 
 
 def _power(
@@ -91,8 +91,8 @@ def _power(
     machine: Machine,
     material: Material | None,
     settings: ProofSettings,
-) -> Said:
-    if material is None or section.spindle_stands:
+) -> LoadFindings:
+    if material is None or section.spindle_stopped:
         return [], []
     limit = machine.power_at(section.spindle) * settings.power
     power = proof.load.power[rows]
@@ -135,10 +135,10 @@ def _excess(
     rows: Ints,
     material: Material | None,
     settings: ProofSettings,
-) -> Said:
-    chosen, load = chosen_load(section, material), proof.load
+) -> LoadFindings:
+    allowed, load = allowed_load(section, material), proof.load
     times = np.maximum(
-        load.rate / (settings.removal * chosen.rate), load.chip / (settings.chip * chosen.chip)
+        load.rate / (settings.removal * allowed.rate), load.chip / (settings.chip * allowed.chip)
     )
     over = times[rows] > 1.0 + tolerance.PARAMETRIC
     if not over.any():
@@ -150,7 +150,7 @@ def _excess(
             "verify.load",
             f"{section.operation} removes {load.rate[worst]:.0f} cm3/min in chips of {load.chip[worst]:.2f} mm with "
             f"{math.degrees(proof.stock.engagement[worst]):.0f} degrees of {section.tool.name} engaged; its data are for "
-            f"{chosen.rate:.0f} cm3/min and {chosen.chip:.2f} mm",
+            f"{allowed.rate:.0f} cm3/min and {allowed.chip:.2f} mm",
             section.operation,
             block_of(proof, section, worst),
             remedy=_feed_remedy(proof, section, offers),
@@ -192,7 +192,7 @@ def _feeds(
 def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]) -> str:
     """Return which feeds are offered."""
     lines = section.block_lines
-    places = [
+    positions = [
         (
             f"line {lines[o.first]} to {lines[o.last]}"
             if lines
@@ -203,12 +203,14 @@ def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]
     ]
     return (
         "feed at most "
-        + ", ".join(f"{feed:.0f} mm/min from {place}" for place, feed in places)
+        + ", ".join(f"{feed:.0f} mm/min from {position}" for position, feed in positions)
         + "; or clear the material before"
     )
 
 
-def _air(proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings) -> Said:
+def _air(
+    proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings
+) -> LoadFindings:
     air = proof.stock.removed[rows] <= 0.0
     length, seconds = proof.moves.length[rows], proof.times.seconds[rows]
     run, wasted = float(length.sum()), float(seconds[air].sum())

@@ -15,7 +15,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine, Material
 from trunnion.model.motion.program import Program
 from trunnion.model.tool import Tool
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import Contact, PartContact
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.judge.load import Load, load_of
@@ -32,18 +32,18 @@ BUNDLES = {"z": ("z",), "xyz": ("x", "y", "z")}
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SetupProof:
-    """What was measured in one setup on its machine: contact, stock, stands, times and load by move; left (s,) mm on the samples, and the
-    move nearest to each (-1: none)."""
+    """What was measured in one setup on its machine: contact, stock, stands, times and load by move; residual (s,) mm on the samples, and
+    the move nearest to each (-1: none)."""
 
     program: Program
     machine: Machine
     moves: Moves
     contact: Contact
     stock: StockRun
-    stands: AxisPositions
+    axis_positions: AxisPositions
     times: MachineTimes
     load: Load
-    left: Floats
+    residual: Floats
     nearest: Ints
 
     def collides(self, allowed: float) -> Bools:
@@ -63,17 +63,17 @@ def prove_setup(
     material: Material | None,
     settings: ProofSettings,
     points: Floats,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> SetupProof:
     """Return what is measured of one setup's program; `stock` is cut by it, `points` (s, 3) are the samples in its frame."""
     frame = program.setup.frame
     moves = progress.aside(lambda _: moves_of(program.sections), "Reading the moves")
     sweep = progress.aside(lambda _: Sweep.of(moves, NEAR), "Making the moves ready for questions")
-    touched = contact.along(moves, progress.part(0.02, 0.4), settings.threads)
+    penetration = contact.along(moves, progress.part(0.02, 0.4), settings.threads)
     run = run_stock(stock, moves, frame, sweep, progress.part(0.4, 0.7), settings.threads)
     deep = progress.aside(lambda _: stock.blank.depth(points, frame))
-    left, nearest = sweep.left(points, deep, progress.part(0.7, 0.98), settings.threads)
-    stands, times = progress.aside(
+    residual, nearest = sweep.residual(points, deep, progress.part(0.7, 0.98), settings.threads)
+    positions, times = progress.aside(
         lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves"
     )
     load = progress.aside(
@@ -84,19 +84,19 @@ def prove_setup(
         program=program,
         machine=machine,
         moves=moves,
-        contact=touched,
+        contact=penetration,
         stock=run,
-        stands=stands,
+        axis_positions=positions,
         times=times,
         load=load,
-        left=left,
+        residual=residual,
         nearest=nearest,
     )
 
 
 def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[AxisPositions, MachineTimes]:
-    stands = axis_positions(moves, machine, foot)
-    return stands, times_of(moves, stands, machine)
+    positions = axis_positions(moves, machine, foot)
+    return positions, times_of(moves, positions, machine)
 
 
 def foot_of(blank: Blank, frame: Frame) -> Floats:

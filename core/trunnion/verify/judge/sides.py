@@ -11,7 +11,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.model.fixture import Fixture
 from trunnion.part.shape.facets import Facets
 from trunnion.part.shape.surfaces import Surfaces
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import PartContact
 
 FIXTURE_BOUND = 0.02
@@ -32,7 +32,7 @@ def sides_of(
     surfaces: Sequence[Surfaces],
     facets: Sequence[Facets | None],
     fixtures: Sequence[Sequence[Fixture]],
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> list[Side]:
     """Return the side of every frame, from the part's faces in it and what holds it there."""
     sides = []

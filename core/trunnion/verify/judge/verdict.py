@@ -22,7 +22,7 @@ from trunnion.model.verdict import Offer, Outcome, Verdict
 from trunnion.part.part import Part
 from trunnion.part.shape.facets import Facets, facets_of
 from trunnion.part.shape.surfaces import Surfaces, surfaces_of
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.coverage import Samples, samples_of
 from trunnion.verify.judge.coverage import covered
 from trunnion.verify.judge.findings import setup_findings
@@ -43,7 +43,7 @@ def prove(
     tools: Sequence[Tool],
     machines: Sequence[Machine],
     settings: ProofSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     planned_faces: Collection[int] = (),
     material: Material | None = None,
 ) -> Verdict:
@@ -100,7 +100,7 @@ def prove_surfaces(
     tools: Sequence[Tool],
     machines: Sequence[Machine],
     settings: ProofSettings,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     planned_faces: Collection[int] = (),
     material: Material | None = None,
     facets: Sequence[Facets] = (),
@@ -137,10 +137,11 @@ def prove_surfaces(
     findings: list[Finding] = []
     offers: list[Offer] = []
     for p in proofs:
-        told, offered = progress.aside(
-            partial(_told, p, surfaces[0].tag, material, settings), "Judging the moves"
+        noted, offered = progress.aside(
+            partial(_findings_and_offers, p, surfaces[0].tag, material, settings),
+            "Judging the moves",
         )
-        findings, offers = findings + told, offers + offered
+        findings, offers = findings + noted, offers + offered
     whole = covered(
         samples,
         surfaces[0].tag,
@@ -182,7 +183,7 @@ def prove_surfaces(
     )
 
 
-def _told(
+def _findings_and_offers(
     proof: SetupProof,
     tags: Ints,
     material: Material | None,
@@ -192,12 +193,16 @@ def _told(
     """Return the findings on one setup's moves, and what is offered against too much load."""
     findings = setup_findings(proof, tags, settings)
     progress.check()
-    said, offers = load_findings(proof, proof.machine, material, settings)
+    load_notes, offers = load_findings(proof, proof.machine, material, settings)
     progress.check()
     limits = limit_findings(
-        proof.program.setup.name, proof.program.sections, proof.moves, proof.stands, proof.machine
+        proof.program.setup.name,
+        proof.program.sections,
+        proof.moves,
+        proof.axis_positions,
+        proof.machine,
     )
-    return [*findings, *said, *limits], list(offers)
+    return [*findings, *load_notes, *limits], list(offers)
 
 
 def outcome_of(findings: Sequence[Finding]) -> Outcome:

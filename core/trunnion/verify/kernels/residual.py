@@ -35,7 +35,7 @@ PX, PY, PZ, DX, DY, DZ, AX, AY, AZ, EX, EY, EZ, TURN, CENTRE_E, CENTRE_N, RADIUS
 )
 """P the tip at the start and D from there to its end; A the axis at the start, E the unit direction across it in which the axis turns by
 the angle TURN. Of arcs (RADIUS above 0): centre along E and along A x E, radius, angle at the start and the signed angle turned."""
-WAY_COLUMNS = 18
+MOTION_COLUMNS = 18
 BUCKET = 4
 """Spans in a node without children: as many as cost about what two nodes do."""
 _LEVEL = 1e-9
@@ -67,14 +67,14 @@ class Flutes(NamedTuple):
 class SpanTree(NamedTuple):
     """Spans of ways in a bounding volume hierarchy of poses, one for each tool.
 
-    way (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way,
+    motion (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way,
     low and high (k,) shares of it, reach (k,) mm how far its tip moves from its middle. Nodes: pose
     (m, 8) a position on the axis, the unit axis, and how far (mm) and by what chord of angle (|a - a'|
     of two axes) poses below it differ; link (m, 5) children or -1, first and last span, tool. root
     (r,) nodes.
     """
 
-    way: Floats
+    motion: Floats
     move: Ints
     tool: Ints
     of: Ints
@@ -387,7 +387,7 @@ def node_distance_bound(
 ) -> float:
     """Return a lower bound (mm) of the signed distance of a point to any pose below a node.
 
-    f(node's pose) - translation - chord of angle x distance from the pose's place: a turn of the
+    f(node's pose) - translation - chord of angle x distance from the pose's position: a turn of the
     axis moves the point by at most that chord times its distance.
     """
     pose, tool = tree.pose, tree.link[n, 4]
@@ -457,7 +457,7 @@ def nearest_span(
             row = tree.of[k]
             if tree.move[row] >= before:
                 continue
-            w = tree.way[row]
+            w = tree.motion[row]
             endless = above and w[AZ] > 1.0 - _LEVEL and w[TURN] == 0.0
             # A span is bounded as a node is: by its middle pose.
             mx, my, mz = point_in_tool_frame(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
@@ -479,7 +479,7 @@ def nearest_span(
 
 @njit(cache=True, nogil=True)
 def span_poses(
-    way: Floats, of: Ints, low: Floats, high: Floats, middle: Floats
+    motion: Floats, of: Ints, low: Floats, high: Floats, middle: Floats
 ) -> tuple[Floats, Floats]:
     """Return the middle pose of spans (k, 6), a position on the axis and the unit axis, and how far (mm)
     and by what chord of angle (k, 2) the others of the span differ.
@@ -489,12 +489,12 @@ def span_poses(
     """
     pose, reach = np.empty((len(of), 6)), np.empty((len(of), 2))
     for k in range(len(of)):
-        w, t, share = way[of[k]], 0.5 * (low[k] + high[k]), high[k] - low[k]
+        w, t, share = motion[of[k]], 0.5 * (low[k] + high[k]), high[k] - low[k]
         ax, ay, az = w[AX], w[AY], w[AZ]
         px, py, pz = w[PX] + t * w[DX], w[PY] + t * w[DY], w[PZ] + t * w[DZ]
         length = math.sqrt(w[DX] * w[DX] + w[DY] * w[DY] + w[DZ] * w[DZ]) * share
         if w[RADIUS] > 0.0:
-            # Seen from its own tip the origin is at minus the tip's place.
+            # Seen from its own tip the origin is at minus the tip's position.
             ox, oy, oz = point_in_tool_frame(w, 0.0, 0.0, 0.0, t)
             nx, ny, nz = ay * w[EZ] - az * w[EY], az * w[EX] - ax * w[EZ], ax * w[EY] - ay * w[EX]
             px, py, pz = (
@@ -612,10 +612,10 @@ def residual_loop(
     tree: SpanTree,
     flutes: Flutes,
     bound: float,
-    left: Floats,
+    residual: Floats,
     nearest: Ints,
 ) -> None:
-    """Lower left (s,) mm to the smallest signed distance of each point to what cuts along the moves of
+    """Lower residual (s,) mm to the smallest signed distance of each point to what cuts along the moves of
     its cell and of the tree.
 
     points (s, 3); order (s,) in which they are visited. cutter (n, 3) is radius, corner radius and
@@ -630,7 +630,7 @@ def residual_loop(
     for k in range(first, last):
         n = order[k]
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
-        best, by = left[n], nearest[n]
+        best, by = residual[n], nearest[n]
         i, j = int(math.floor((x - grid[0]) / grid[2])), int(math.floor((y - grid[1]) / grid[2]))
         if 0 <= i < shape[0] and 0 <= j < shape[1]:
             cell = j * shape[0] + i
@@ -643,7 +643,7 @@ def residual_loop(
                 )
                 if d < best:
                     best, by = d, m
-        left[n], nearest[n], _row, _share = nearest_span(
+        residual[n], nearest[n], _row, _share = nearest_span(
             x, y, z, tree, flutes, best, by, bound, NO_END, False, -np.inf, nodes, least, spans
         )
 
@@ -657,10 +657,10 @@ def residual_bvh_loop(
     tree: SpanTree,
     flutes: Flutes,
     bound: float,
-    left: Floats,
+    residual: Floats,
     nearest: Ints,
 ) -> None:
-    """Lower left (s,) as `residual_loop` does, by the moves of a tree alone."""
+    """Lower residual (s,) as `residual_loop` does, by the moves of a tree alone."""
     nodes, least, spans = (
         np.zeros(len(tree.root) + 128, np.int64),
         np.zeros(len(tree.root) + 128),
@@ -668,13 +668,13 @@ def residual_bvh_loop(
     )
     for k in range(first, last):
         n = order[k]
-        left[n], nearest[n], _row, _share = nearest_span(
+        residual[n], nearest[n], _row, _share = nearest_span(
             points[n, 0],
             points[n, 1],
             points[n, 2],
             tree,
             flutes,
-            left[n],
+            residual[n],
             nearest[n],
             bound,
             NO_END,

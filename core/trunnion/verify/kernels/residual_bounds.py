@@ -268,7 +268,7 @@ def cell_residual_bound(
             top += 2
             continue
         for k in range(tree.link[n, 2], tree.link[n, 3]):
-            w = tree.way[tree.of[k]]
+            w = tree.motion[tree.of[k]]
             mx, my, mz = point_in_tool_frame(w, x, y, z, 0.5 * (tree.low[k] + tree.high[k]))
             turn = w[TURN] * (tree.high[k] - tree.low[k])
             # A turn moves a point by at most the turn times its distance from the tip, here from the middle.
@@ -326,13 +326,13 @@ def _mean_of_two(p: Floats, q: Floats) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _nearest_body(flutes: Flutes, tool: int, w: Floats, place: Floats, share: float) -> int:
-    """Return which of a tool's convex bodies a place lies deepest in, or is nearest to, in a pose.
+def _nearest_body(flutes: Flutes, tool: int, w: Floats, position: Floats, share: float) -> int:
+    """Return which of a tool's convex bodies a position lies deepest in, or is nearest to, in a pose.
 
     The convexity that the bound from above needs holds for one body; its distance is at least the
     union's.
     """
-    x, y, z = point_in_tool_frame(w, place[0], place[1], place[2], share)
+    x, y, z = point_in_tool_frame(w, position[0], position[1], position[2], share)
     best, deepest = flutes.start[tool], -np.inf
     # The depth is the greatest over the bodies: that of a union inside of it.
     for k in range(flutes.start[tool], flutes.start[tool + 1]):
@@ -358,7 +358,7 @@ def cell_residual_loop(
     lowest: float,
     bound: float,
     above: Bools,
-    left: Floats,
+    residual: Floats,
     nearest: Ints,
     upper: Floats,
     lower: Floats,
@@ -367,7 +367,7 @@ def cell_residual_loop(
     above and below over the whole cell.
 
     middle, a, b (c, 3), slack (c,) as in `cell_residual_bound`; far: no distance above it is reported. Fills
-    left (c,) mm, nearest (c,) rows or -1, upper and lower (c,) mm. Where a cell may fall by `bound`
+    residual (c,) mm, nearest (c,) rows or -1, upper and lower (c,) mm. Where a cell may fall by `bound`
     below both `lowest` and its middle, its `lower` only says so; with an infinite `lowest` it isn't
     searched for. Where `above` (c,) is false, no bound from above is searched for.
     """
@@ -377,7 +377,7 @@ def cell_residual_loop(
         np.zeros(len(tree.root) + 128),
         np.zeros((96, 2)),
     )
-    rows, shares, distance, places = (
+    rows, shares, distance, positions = (
         np.zeros(POSES, np.int64),
         np.zeros(POSES),
         np.zeros((POSES, 4)),
@@ -388,11 +388,11 @@ def cell_residual_loop(
         for k in range(POSES if above[n] else 1):
             i = 0.0 if k == 0 else (1.0 if k % 2 else -1.0)
             j = 0.0 if k == 0 else (1.0 if k > 2 else -1.0)
-            places[k] = middle[n] + i * a[n] + j * b[n]
+            positions[k] = middle[n] + i * a[n] + j * b[n]
             value, move, rows[k], shares[k] = nearest_span(
-                places[k, 0],
-                places[k, 1],
-                places[k, 2],
+                positions[k, 0],
+                positions[k, 1],
+                positions[k, 2],
                 tree,
                 flutes,
                 far,
@@ -406,18 +406,18 @@ def cell_residual_loop(
                 spans,
             )
             if k == 0:
-                left[n], nearest[n] = value, move
+                residual[n], nearest[n] = value, move
         upper[n] = far if above[n] else -np.inf
         for k in range(POSES if above[n] else 0):
             if rows[k] < 0:
                 continue
-            w, tool = tree.way[rows[k]], tree.tool[rows[k]]
-            body = _nearest_body(flutes, tool, w, places[k], shares[k])
+            w, tool = tree.motion[rows[k]], tree.tool[rows[k]]
+            body = _nearest_body(flutes, tool, w, positions[k], shares[k])
             # Distances of this pose at the four corners: their largest is a bound; so is each mean
             # with an earlier pose.
             for c in range(4):
                 x, y, z = point_in_tool_frame(
-                    w, places[c + 1, 0], places[c + 1, 1], places[c + 1, 2], shares[k]
+                    w, positions[c + 1, 0], positions[c + 1, 1], positions[c + 1, 2], shares[k]
                 )
                 depth, _r, _h = depth_in_body(
                     flutes.arc, flutes.first[body], flutes.last[body], math.sqrt(x * x + y * y), z
@@ -437,8 +437,8 @@ def cell_residual_loop(
                 slack[n],
                 tree,
                 flutes,
-                left[n],
-                min(lowest, left[n]) - bound,
+                residual[n],
+                min(lowest, residual[n]) - bound,
                 close,
                 nodes,
                 least,

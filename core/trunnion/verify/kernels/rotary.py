@@ -37,9 +37,9 @@ def nearest_congruent(value: float, before: float, low: float, high: float) -> f
 
 @njit(cache=True, nogil=True)
 def choose_angles_greedy(
-    angles: Floats, free: Bools, low: Floats, high: Floats, first: int, slack: float, chosen: Floats
+    angles: Floats, free: Bools, low: Floats, high: Floats, first: int, slack: float, result: Floats
 ) -> tuple[float, int]:
-    """Fill chosen (m, a) with the rotary angles of m poses and return the total angle turned (rad,
+    """Fill result (m, a) with the rotary angles of m poses and return the total angle turned (rad,
     summed over axes) and the number of poses outside the limits.
 
     angles (m, 2, a) rad: both solutions of each pose; free (m, 2, a): that axis is arbitrary (the
@@ -47,33 +47,33 @@ def choose_angles_greedy(
     it passes its limit by more than `slack`. `first`: the solution taken by the first pose, which
     starts from 0 on every axis.
     """
-    m, ways, axes = angles.shape
+    m, solutions, axes = angles.shape
     turned, outside = 0.0, 0
     for k in range(m):
         # Fewest axes outside their limits first, then the least turning; of equals the first
         # solution.
-        best, best_out, best_way = math.inf, axes + 1, 0
-        for way in range(ways):
-            if k == 0 and way != first:
+        best, best_out, best_solution = math.inf, axes + 1, 0
+        for solution in range(solutions):
+            if k == 0 and solution != first:
                 continue
             cost, out = 0.0, 0
             for a in range(axes):
-                before = chosen[k - 1, a] if k else 0.0
+                before = result[k - 1, a] if k else 0.0
                 angle = (
                     before
-                    if free[k, way, a]
-                    else nearest_congruent(angles[k, way, a], before, low[a], high[a])
+                    if free[k, solution, a]
+                    else nearest_congruent(angles[k, solution, a], before, low[a], high[a])
                 )
                 cost += abs(angle - before)
                 out += angle < low[a] - slack or angle > high[a] + slack
             if out < best_out or (out == best_out and cost < best):
-                best, best_out, best_way = cost, out, way
+                best, best_out, best_solution = cost, out, solution
         for a in range(axes):
-            before = chosen[k - 1, a] if k else 0.0
-            chosen[k, a] = (
+            before = result[k - 1, a] if k else 0.0
+            result[k, a] = (
                 before
-                if free[k, best_way, a]
-                else nearest_congruent(angles[k, best_way, a], before, low[a], high[a])
+                if free[k, best_solution, a]
+                else nearest_congruent(angles[k, best_solution, a], before, low[a], high[a])
             )
         turned += best
         outside += best_out > 0

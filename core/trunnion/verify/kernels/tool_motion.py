@@ -22,7 +22,7 @@ from trunnion.geometry.arrays import Floats
 # A way: how the tool goes along one move.
 START, VECTOR, AXIS, PIVOT, ANGLE, CENTRE, ACROSS, ALONG = 0, 3, 6, 9, 12, 13, 16, 19
 R_START, R_END, SWEEP, CLIMB, LENGTH = range(22, 27)
-WAY_COLUMNS = 27
+MOTION_COLUMNS = 27
 """START and VECTOR of the tip; AXIS at the start turns about the unit vector PIVOT, perpendicular to
 it, by ANGLE >= 0. An arc (SWEEP not 0) is about CENTRE from the unit vector ACROSS towards ALONG =
 AXIS x ACROSS; R_START, R_END its radius at both ends, CLIMB its rise. LENGTH bounds the tip's path
@@ -48,18 +48,22 @@ def fill_tool_motion(
     end_axis: Floats,
     centre: Floats,
     sweep: float,
-    way: Floats,
+    motion: Floats,
 ) -> None:
-    """Fill way (27,) from a block's tips start, end (3,), its unit axes at both, and an arc's centre
+    """Fill motion (27,) from a block's tips start, end (3,), its unit axes at both, and an arc's centre
     (3,) and signed angle `sweep` (0: a line, centre unused)."""
-    way[:] = 0.0
+    motion[:] = 0.0
     square = 0.0
     for k in range(3):
-        way[START + k], way[VECTOR + k], way[AXIS + k] = start[k], end[k] - start[k], axis[k]
-        square += way[VECTOR + k] * way[VECTOR + k]
-    way[LENGTH] = math.sqrt(square)
+        motion[START + k], motion[VECTOR + k], motion[AXIS + k] = (
+            start[k],
+            end[k] - start[k],
+            axis[k],
+        )
+        square += motion[VECTOR + k] * motion[VECTOR + k]
+    motion[LENGTH] = math.sqrt(square)
     if sweep != 0.0:
-        _fill_arc_motion(start, end, axis, centre, sweep, way)
+        _fill_arc_motion(start, end, axis, centre, sweep, motion)
         return
     # Axis of the turn: axis x end_axis, whose length is the sine of the angle.
     wx, wy, wz = (
@@ -80,7 +84,7 @@ def fill_tool_motion(
         else:
             wx, wy, wz = -axis[2], 0.0, axis[0]
     size = math.sqrt(wx * wx + wy * wy + wz * wz)
-    way[PIVOT], way[PIVOT + 1], way[PIVOT + 2], way[ANGLE] = (
+    motion[PIVOT], motion[PIVOT + 1], motion[PIVOT + 2], motion[ANGLE] = (
         wx / size,
         wy / size,
         wz / size,
@@ -90,7 +94,7 @@ def fill_tool_motion(
 
 @njit(cache=True, nogil=True)
 def _fill_arc_motion(
-    start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, way: Floats
+    start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, motion: Floats
 ) -> None:
     """Fill the columns of an arc: the centre moved along the axis to the start's level, the frame
     across the axis, both radii and the climb.
@@ -104,49 +108,58 @@ def _fill_arc_motion(
         climb += (end[k] - start[k]) * axis[k]
     square = last = 0.0
     for k in range(3):
-        way[CENTRE + k] = centre[k] + up * axis[k]
-        way[ACROSS + k] = start[k] - way[CENTRE + k]
-        square += way[ACROSS + k] ** 2
-        last += (end[k] - climb * axis[k] - way[CENTRE + k]) ** 2
+        motion[CENTRE + k] = centre[k] + up * axis[k]
+        motion[ACROSS + k] = start[k] - motion[CENTRE + k]
+        square += motion[ACROSS + k] ** 2
+        last += (end[k] - climb * axis[k] - motion[CENTRE + k]) ** 2
     radius = math.sqrt(square)
     for k in range(3):
-        way[ACROSS + k] /= max(radius, FLAT)
+        motion[ACROSS + k] /= max(radius, FLAT)
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        way[ALONG + k] = axis[i] * way[ACROSS + j] - axis[j] * way[ACROSS + i]
-    way[R_START], way[R_END], way[SWEEP], way[CLIMB] = radius, math.sqrt(last), sweep, climb
+        motion[ALONG + k] = axis[i] * motion[ACROSS + j] - axis[j] * motion[ACROSS + i]
+    motion[R_START], motion[R_END], motion[SWEEP], motion[CLIMB] = (
+        radius,
+        math.sqrt(last),
+        sweep,
+        climb,
+    )
     # Arc length at the larger radius: never too short.
-    way[LENGTH] = math.hypot(max(radius, way[R_END]) * abs(sweep), climb)
+    motion[LENGTH] = math.hypot(max(radius, motion[R_END]) * abs(sweep), climb)
 
 
 @njit(cache=True, nogil=True)
-def tip_at(way: Floats, t: float) -> tuple[float, float, float]:
+def tip_at(motion: Floats, t: float) -> tuple[float, float, float]:
     """Return the tip (mm) at a share t of the block."""
-    if way[SWEEP] == 0.0:
+    if motion[SWEEP] == 0.0:
         return (
-            way[START] + t * way[VECTOR],
-            way[START + 1] + t * way[VECTOR + 1],
-            way[START + 2] + t * way[VECTOR + 2],
+            motion[START] + t * motion[VECTOR],
+            motion[START + 1] + t * motion[VECTOR + 1],
+            motion[START + 2] + t * motion[VECTOR + 2],
         )
-    radius = way[R_START] + t * (way[R_END] - way[R_START])
-    a, b, c = radius * math.cos(t * way[SWEEP]), radius * math.sin(t * way[SWEEP]), t * way[CLIMB]
+    radius = motion[R_START] + t * (motion[R_END] - motion[R_START])
+    a, b, c = (
+        radius * math.cos(t * motion[SWEEP]),
+        radius * math.sin(t * motion[SWEEP]),
+        t * motion[CLIMB],
+    )
     return (
-        way[CENTRE] + a * way[ACROSS] + b * way[ALONG] + c * way[AXIS],
-        way[CENTRE + 1] + a * way[ACROSS + 1] + b * way[ALONG + 1] + c * way[AXIS + 1],
-        way[CENTRE + 2] + a * way[ACROSS + 2] + b * way[ALONG + 2] + c * way[AXIS + 2],
+        motion[CENTRE] + a * motion[ACROSS] + b * motion[ALONG] + c * motion[AXIS],
+        motion[CENTRE + 1] + a * motion[ACROSS + 1] + b * motion[ALONG + 1] + c * motion[AXIS + 1],
+        motion[CENTRE + 2] + a * motion[ACROSS + 2] + b * motion[ALONG + 2] + c * motion[AXIS + 2],
     )
 
 
 @njit(cache=True, nogil=True)
-def axis_at(way: Floats, t: float) -> tuple[float, float, float]:
+def axis_at(motion: Floats, t: float) -> tuple[float, float, float]:
     """Return the unit tool axis at a share t of the block."""
-    ax, ay, az = way[AXIS], way[AXIS + 1], way[AXIS + 2]
-    if way[ANGLE] == 0.0:
+    ax, ay, az = motion[AXIS], motion[AXIS + 1], motion[AXIS + 2]
+    if motion[ANGLE] == 0.0:
         return ax, ay, az
-    wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
+    wx, wy, wz = motion[PIVOT], motion[PIVOT + 1], motion[PIVOT + 2]
     # Rodrigues' rotation formula; the term along PIVOT drops out because PIVOT is perpendicular to
     # AXIS.
-    c, s = math.cos(t * way[ANGLE]), math.sin(t * way[ANGLE])
+    c, s = math.cos(t * motion[ANGLE]), math.sin(t * motion[ANGLE])
     return (
         c * ax + s * (wy * az - wz * ay),
         c * ay + s * (wz * ax - wx * az),
@@ -155,7 +168,7 @@ def axis_at(way: Floats, t: float) -> tuple[float, float, float]:
 
 
 @njit(cache=True, nogil=True)
-def fill_swept_segment(way: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
+def fill_swept_segment(motion: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
     """Fill ends (2, 12) and span (8,) for the part of a block between two shares.
 
     ends: for both ends the rotation matrix (9, row by row) that takes world directions into the
@@ -164,25 +177,29 @@ def fill_swept_segment(way: Floats, t0: float, t1: float, ends: Floats, span: Fl
     of its ends, S_FROM and S_TO the shares.
     """
     middle = 0.5 * (t0 + t1)
-    span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2] = axis_at(way, middle)
+    span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2] = axis_at(motion, middle)
     share = t1 - t0
-    span[S_ANGLE], span[S_LENGTH], span[S_BULGE] = share * way[ANGLE], share * way[LENGTH], 0.0
+    span[S_ANGLE], span[S_LENGTH], span[S_BULGE] = (
+        share * motion[ANGLE],
+        share * motion[LENGTH],
+        0.0,
+    )
     span[S_FROM], span[S_TO] = t0, t1
-    if way[SWEEP] != 0.0:
+    if motion[SWEEP] != 0.0:
         # Sagitta r (1 - cos(turn / 2)) of the larger radius; the second term is the mixed
         # derivative of a radius that drifts while it turns, 2 drift turn / 8.
-        turn = min(share * abs(way[SWEEP]), math.pi)
-        drift = share * abs(way[R_END] - way[R_START])
+        turn = min(share * abs(motion[SWEEP]), math.pi)
+        drift = share * abs(motion[R_END] - motion[R_START])
         span[S_BULGE] = (
-            max(way[R_START], way[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
+            max(motion[R_START], motion[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
         )
     for e in range(2):
-        ends[e, TIP], ends[e, TIP + 1], ends[e, TIP + 2] = tip_at(way, t0 if e == 0 else t1)
+        ends[e, TIP], ends[e, TIP + 1], ends[e, TIP + 2] = tip_at(motion, t0 if e == 0 else t1)
         # At the start the tool is half the angle behind its middle: points turn forward by it, at
         # the end back. Rodrigues' matrix about PIVOT; the identity where the axis keeps still.
         half = 0.5 * span[S_ANGLE] if e == 0 else -0.5 * span[S_ANGLE]
         c, s = math.cos(half), math.sin(half)
-        wx, wy, wz = way[PIVOT], way[PIVOT + 1], way[PIVOT + 2]
+        wx, wy, wz = motion[PIVOT], motion[PIVOT + 1], motion[PIVOT + 2]
         v = 1.0 - c
         ends[e, 0], ends[e, 1], ends[e, 2] = (
             c + v * wx * wx,
@@ -216,7 +233,7 @@ def point_in_tool_frame(
 
 
 @njit(cache=True, nogil=True)
-def segment_count(way: Floats, radius: float) -> int:
+def segment_count(motion: Floats, radius: float) -> int:
     """Return into how many equal spans a block is cut for a body of a radius (mm).
 
     No span is longer than the body is wide, turns by more than MOST_TURN or sweeps more than
@@ -224,9 +241,9 @@ def segment_count(way: Floats, radius: float) -> int:
     half a circle, far above MOST_SWEEP.
     """
     most = max(
-        way[LENGTH] / (2.0 * max(radius, NARROW)),
-        way[ANGLE] / MOST_TURN,
-        abs(way[SWEEP]) / MOST_SWEEP,
+        motion[LENGTH] / (2.0 * max(radius, NARROW)),
+        motion[ANGLE] / MOST_TURN,
+        abs(motion[SWEEP]) / MOST_SWEEP,
     )
     return max(1, int(math.ceil(most)))
 

@@ -19,7 +19,7 @@ from trunnion.verify.motion import Moves
 
 STEP = math.radians(2.0)
 """Largest turn of the tool axis, or of an arc, between two poses that are looked at."""
-STANDS = 1e-9
+UNTURNED = 1e-9
 """Two directions closer than this (their difference's length) are one."""
 SLACK = 1e-6
 """rad: how far an angle may be beyond a limit before it counts as outside."""
@@ -65,9 +65,9 @@ def axis_positions(moves: Moves, machine: Machine, foot: Floats) -> AxisPosition
 def poses_of(moves: Moves) -> tuple[Ints, Floats, Floats]:
     """Return poses along moves, start and end of each among them: move (k,), tip (k, 3), axis (k, 3)."""
     between = angle_between(moves.start_axis, moves.end_axis)
-    steps = np.maximum(1, np.ceil(np.maximum(between, np.abs(moves.sweep)) / STEP - STANDS)).astype(
-        np.int64
-    )
+    steps = np.maximum(
+        1, np.ceil(np.maximum(between, np.abs(moves.sweep)) / STEP - UNTURNED)
+    ).astype(np.int64)
     move = np.repeat(np.arange(len(moves)), steps + 1)
     share = (np.arange(len(move)) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)) / steps[
         move
@@ -92,7 +92,7 @@ def angle_between(a: Floats, b: Floats) -> Floats:
 
 def turned_axes(start: Floats, end: Floats, between: Floats, share: Floats) -> Floats:
     """Return the directions (k, 3) at a share (k,) of the even turn from start to end, which are `between` (k,) rad apart."""
-    still = between < STANDS
+    still = between < UNTURNED
     sine = np.where(still, 1.0, np.sin(between))
     a, b = np.sin((1.0 - share) * between) / sine, np.sin(share * between) / sine
     return np.where(still[:, None], start, a[:, None] * start + b[:, None] * end)
@@ -105,16 +105,16 @@ def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
     """
     rotary = machine.rotary
     if not rotary:
-        return np.zeros((len(axis), 0)), np.asarray(np.linalg.norm(axis - UP, axis=1) < STANDS)
+        return np.zeros((len(axis), 0)), np.asarray(np.linalg.norm(axis - UP, axis=1) < UNTURNED)
     if (axis == UP).all():
         return np.zeros((len(axis), len(rotary))), np.ones(len(axis), bool)
-    angles, free, good = _both_ways(axis, rotary)
+    angles, free, good = _both_solutions(axis, rotary)
     low, high = (np.radians([getattr(a, end) for a in rotary]) for end in ("low", "high"))
     tried = []
     for first in (0, 1):
-        chosen = np.zeros((len(axis), len(rotary)))
-        turned, outside = choose_angles_greedy(angles, free, low, high, first, SLACK, chosen)
-        tried.append((outside, turned, first, chosen))
+        angles_used = np.zeros((len(axis), len(rotary)))
+        turned, outside = choose_angles_greedy(angles, free, low, high, first, SLACK, angles_used)
+        tried.append((outside, turned, first, angles_used))
     return min(tried, key=lambda t: t[:3])[3], good
 
 
@@ -122,8 +122,8 @@ def can_hold(axis: Floats, machine: Machine) -> Bools:
     """Return which tool axes (k, 3) a machine can hold within the limits of its rotary axes, each by itself."""
     rotary = machine.rotary
     if not rotary:
-        return np.asarray(np.linalg.norm(axis - UP, axis=1) < STANDS)
-    angles, free, good = _both_ways(axis, rotary)
+        return np.asarray(np.linalg.norm(axis - UP, axis=1) < UNTURNED)
+    angles, free, good = _both_solutions(axis, rotary)
     low, high = (np.radians([getattr(a, end) for a in rotary]) for end in ("low", "high"))
     # The least of an angle's full turns that is not below the limit.
     least = low + np.mod(angles - low + SLACK, 2.0 * np.pi) - SLACK
@@ -174,7 +174,7 @@ def _on_arcs(moves: Moves, move: Ints, share: Floats) -> Floats:
     )
 
 
-def _both_ways(axis: Floats, rotary: tuple[Axis, ...]) -> tuple[Floats, Bools, Bools]:
+def _both_solutions(axis: Floats, rotary: tuple[Axis, ...]) -> tuple[Floats, Bools, Bools]:
     """Return both ways (k, 2, a) of rotary angles, which of them are free (k, 2, a), and which poses can be held (k,)."""
     up = np.broadcast_to(UP, axis.shape)
     first = rotary[0]
@@ -182,7 +182,7 @@ def _both_ways(axis: Floats, rotary: tuple[Axis, ...]) -> tuple[Floats, Bools, B
         v, w = (axis, up) if first.carries == "work" else (up, axis)
         u = np.array(first.direction)
         angle, free = _about(u, v, w)
-        good = np.linalg.norm(turned(v, first, angle) - w, axis=1) < math.sqrt(STANDS)
+        good = np.linalg.norm(turned(v, first, angle) - w, axis=1) < math.sqrt(UNTURNED)
         return (
             np.repeat(angle[:, None, None], 2, axis=1),
             np.repeat(free[:, None, None], 2, axis=1),
@@ -208,11 +208,11 @@ def _second_subproblem(p: Floats, q: Floats, v: Floats, w: Floats) -> tuple[Floa
     rest = (1.0 - a * a - b * b - 2.0 * a * b * pq) / float(across @ across)
     side = np.sqrt(np.maximum(rest, 0.0))
     angles, free = np.zeros((len(v), 2, 2)), np.zeros((len(v), 2, 2), bool)
-    for way, sign in enumerate((1.0, -1.0)):
+    for solution, sign in enumerate((1.0, -1.0)):
         middle = np.outer(a, p) + np.outer(b, q) + np.outer(sign * side, across)
-        angles[:, way, 0], free[:, way, 0] = _about(p, middle, w)
-        angles[:, way, 1], free[:, way, 1] = _about(q, v, middle)
-    return angles, free, rest > -math.sqrt(STANDS)
+        angles[:, solution, 0], free[:, solution, 0] = _about(p, middle, w)
+        angles[:, solution, 1], free[:, solution, 1] = _about(q, v, middle)
+    return angles, free, rest > -math.sqrt(UNTURNED)
 
 
 def _about(u: Floats, v: Floats, w: Floats) -> tuple[Floats, Bools]:
@@ -220,5 +220,5 @@ def _about(u: Floats, v: Floats, w: Floats) -> tuple[Floats, Bools]:
     a, b = v - np.outer(v @ u, u), w - np.outer(w @ u, u)
     angle = np.arctan2(np.cross(a, b) @ u, (a * b).sum(axis=1))
     return np.asarray(angle), np.asarray(
-        np.minimum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) < math.sqrt(STANDS)
+        np.minimum(np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)) < math.sqrt(UNTURNED)
     )

@@ -21,11 +21,11 @@ def limit_findings(
     setup: str,
     sections: Sequence[ProgramSection],
     moves: Moves,
-    stands: AxisPositions,
+    axis_positions: AxisPositions,
     machine: Machine,
 ) -> list[Finding]:
     """Return an error for every limit of the machine that the sections of a setup exceed."""
-    found = _travel(setup, stands, machine)
+    found = _travel(setup, axis_positions, machine)
     for k, s in enumerate(sections):
         fastest = float(s.path.feed.max(initial=0.0))
         if fastest > machine.feed_max * (1 + tolerance.COINCIDENT):
@@ -37,8 +37,8 @@ def limit_findings(
                     remedy="lower the feed",
                 )
             )
-        if s.spindle_stands:
-            found += _standing(s)
+        if s.spindle_stopped:
+            found += _spindle_findings(s)
         elif (
             not machine.spindle_low
             <= s.spindle
@@ -53,11 +53,11 @@ def limit_findings(
                     remedy="change the spindle speed",
                 )
             )
-        found += _rotary(s, k, moves, stands, machine)
+        found += _rotary(s, k, moves, axis_positions, machine)
     return found
 
 
-def _standing(section: ProgramSection) -> list[Finding]:
+def _spindle_findings(section: ProgramSection) -> list[Finding]:
     """Return an error when a section feeds while its spindle stands; rapids may."""
     feeds = np.flatnonzero(section.path.motion != Motion.RAPID)
     if not len(feeds):
@@ -80,11 +80,11 @@ def _standing(section: ProgramSection) -> list[Finding]:
     ]
 
 
-def _travel(setup: str, stands: AxisPositions, machine: Machine) -> list[Finding]:
-    if not len(stands.move):
+def _travel(setup: str, axis_positions: AxisPositions, machine: Machine) -> list[Finding]:
+    if not len(axis_positions.move):
         return []
     found = []
-    for name, needed in zip(LINEAR, np.ptp(stands.linear, axis=0), strict=True):
+    for name, needed in zip(LINEAR, np.ptp(axis_positions.linear, axis=0), strict=True):
         axis = machine.axis(name)
         if needed > axis.high - axis.low:
             found.append(
@@ -100,10 +100,14 @@ def _travel(setup: str, stands: AxisPositions, machine: Machine) -> list[Finding
 
 
 def _rotary(
-    section: ProgramSection, index: int, moves: Moves, stands: AxisPositions, machine: Machine
+    section: ProgramSection,
+    index: int,
+    moves: Moves,
+    axis_positions: AxisPositions,
+    machine: Machine,
 ) -> list[Finding]:
     rows = moves.section == index
-    lost = np.flatnonzero(rows & ~stands.reached)
+    lost = np.flatnonzero(rows & ~axis_positions.reached)
     if len(lost):
         axes = np.vstack([moves.start_axis[lost], moves.end_axis[lost]])
         lean = math.degrees(float(angle_between(axes, np.broadcast_to(UP, axes.shape)).max()))
@@ -121,18 +125,18 @@ def _rotary(
                 remedy="choose a machine with five axes, or a setup that this axis is upright in",
             )
         ]
-    poses = rows[stands.move]
+    poses = rows[axis_positions.move]
     return [
         _outside(
             section,
             axis,
-            stands.rotary[poses, k].min(initial=0.0),
-            stands.rotary[poses, k].max(initial=0.0),
+            axis_positions.rotary[poses, k].min(initial=0.0),
+            axis_positions.rotary[poses, k].max(initial=0.0),
             machine,
         )
         for k, axis in enumerate(machine.rotary)
-        if stands.rotary[poses, k].min(initial=0.0) < math.radians(axis.low) - SLACK
-        or stands.rotary[poses, k].max(initial=0.0) > math.radians(axis.high) + SLACK
+        if axis_positions.rotary[poses, k].min(initial=0.0) < math.radians(axis.low) - SLACK
+        or axis_positions.rotary[poses, k].max(initial=0.0) > math.radians(axis.high) + SLACK
     ]
 
 

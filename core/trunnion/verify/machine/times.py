@@ -28,7 +28,7 @@ class MachineTimes:
     speed: Floats
 
 
-def times_of(moves: Moves, stands: AxisPositions, machine: Machine) -> MachineTimes:
+def times_of(moves: Moves, axis_positions: AxisPositions, machine: Machine) -> MachineTimes:
     """Return the machining time of every move, with accelerations."""
     n = len(moves)
     seconds, top = np.zeros(n), np.zeros(n)
@@ -36,12 +36,12 @@ def times_of(moves: Moves, stands: AxisPositions, machine: Machine) -> MachineTi
         return MachineTimes(seconds=seconds, speed=top)
     slowest = min(a.acceleration for a in machine.axes if a.kind == "linear")
     weight = np.array([slowest / np.radians(a.acceleration) for a in machine.rotary])
-    axes = np.column_stack([stands.linear, stands.rotary * weight])
-    first, last, way = _ways(axes, stands.move, n)
+    axes = np.column_stack([axis_positions.linear, axis_positions.rotary * weight])
+    first, last, distance = _distances(axes, axis_positions.move, n)
     arc = moves.sweep != 0.0
     if arc.any():
-        first[arc], last[arc] = _tangents(stands, axes, np.flatnonzero(arc))
-    length = np.where(stands.turns, way, moves.length)
+        first[arc], last[arc] = _tangents(axis_positions, axes, np.flatnonzero(arc))
+    length = np.where(axis_positions.turns, distance, moves.length)
     rates = (
         np.array(
             [machine.axis(name).rapid for name in LINEAR]
@@ -49,11 +49,16 @@ def times_of(moves: Moves, stands: AxisPositions, machine: Machine) -> MachineTi
         )
         / SECONDS_PER_MINUTE
     )
-    fastest = _axis_seconds(np.column_stack([stands.linear, stands.rotary]), rates, stands.move, n)
+    fastest = _axis_seconds(
+        np.column_stack([axis_positions.linear, axis_positions.rotary]),
+        rates,
+        axis_positions.move,
+        n,
+    )
     wanted = np.divide(
         moves.length, moves.feed / SECONDS_PER_MINUTE, out=np.zeros(n), where=~moves.rapid
     )
-    least = np.maximum(wanted, np.where(moves.rapid | stands.turns, fastest, 0.0))
+    least = np.maximum(wanted, np.where(moves.rapid | axis_positions.turns, fastest, 0.0))
     speed = np.divide(length, least, out=np.zeros(n), where=least > 0.0)
     speed[arc] = np.minimum(speed[arc], np.sqrt(slowest * _radii(moves, arc)))
     turn = np.concatenate([[0.0], (first[1:] * last[:-1]).sum(axis=1)])
@@ -69,21 +74,21 @@ def seconds_of(moves: Moves, machine: Machine, foot: Floats) -> Floats:
     return times_of(moves, axis_positions(moves, machine, foot), machine).seconds
 
 
-def _ways(axes: Floats, move: Ints, n: int) -> tuple[Floats, Floats, Floats]:
+def _distances(axes: Floats, move: Ints, n: int) -> tuple[Floats, Floats, Floats]:
     """Return the unit directions (n, a) at the beginning and the end of every move, and how far its axes go (n,)."""
     step = np.diff(axes, axis=0)
     inner = np.flatnonzero(move[1:] == move[:-1])
     step, owner = step[inner], move[inner]
     begin = np.searchsorted(owner, np.arange(n))
     end = np.searchsorted(owner, np.arange(n), side="right") - 1
-    way = np.bincount(owner, np.linalg.norm(step, axis=1), n).astype(np.float64)
-    return _unit(step[begin]), _unit(step[end]), way
+    distance = np.bincount(owner, np.linalg.norm(step, axis=1), n).astype(np.float64)
+    return _unit(step[begin]), _unit(step[end]), distance
 
 
-def _tangents(stands: AxisPositions, axes: Floats, rows: Ints) -> tuple[Floats, Floats]:
+def _tangents(axis_positions: AxisPositions, axes: Floats, rows: Ints) -> tuple[Floats, Floats]:
     """Return the directions at the beginning and the end of arcs: those of the circle through the first and the last three poses."""
-    begin = np.searchsorted(stands.move, rows)
-    end = np.searchsorted(stands.move, rows, side="right") - 1
+    begin = np.searchsorted(axis_positions.move, rows)
+    end = np.searchsorted(axis_positions.move, rows, side="right") - 1
     middle = np.minimum(begin + 2, end)
     first = _unit(4.0 * axes[begin + 1] - 3.0 * axes[begin] - axes[middle])
     middle = np.maximum(end - 2, begin)

@@ -13,7 +13,7 @@ from trunnion.model.blank import Blank
 from trunnion.verify.stock.field import UP, Field, Part, cells_along, rays_in, tiles_of
 
 AXES = ("x", "y", "z")
-ROOM = 4
+SPARE = 4
 """Intervals that a ray has room for at first: two, and two more while it is cut."""
 
 
@@ -47,8 +47,10 @@ class Bundle:
             o + (np.arange(n) + 0.5) * pitch for o, n in zip(origin, (columns, rows), strict=True)
         )
         inside = rays_in(blank, axis, u, v, (first[axis], last[axis]))
-        room = max(ROOM, inside.low.shape[1])
-        low, high = (np.pad(a, ((0, 0), (0, room - a.shape[1]))) for a in (inside.low, inside.high))
+        capacity = max(SPARE, inside.low.shape[1])
+        low, high = (
+            np.pad(a, ((0, 0), (0, capacity - a.shape[1]))) for a in (inside.low, inside.high)
+        )
         count = inside.count * _in_box(rows, columns, pitch, (last - first)[turned[:2]])
         return Bundle(axis, pitch, rows, columns, origin.copy(), count, low, high)
 
@@ -56,7 +58,7 @@ class Bundle:
     def of_field(field: Field) -> Bundle:
         """Return a height field as rays along z."""
         rows, columns = field.top.shape
-        low, high = np.zeros((rows * columns, ROOM)), np.zeros((rows * columns, ROOM))
+        low, high = np.zeros((rows * columns, SPARE)), np.zeros((rows * columns, SPARE))
         low[:, 0], high[:, 0] = field.low[2], field.top.ravel()
         count = _in_box(rows, columns, field.pitch, (field.high - field.low)[:2]) * (
             high[:, 0] > field.low[2]

@@ -25,7 +25,7 @@ FINE = 0.05
 MOST_FINE = 10
 """Most of them along a side of a cell."""
 SHARES = 17
-"""Places of a sloped rapid at which it is held against a column."""
+"""Positions of a sloped rapid at which it is held against a column."""
 
 
 def rays_in_cell(pitch: float) -> int:
@@ -36,34 +36,34 @@ def rays_in_cell(pitch: float) -> int:
 def confirm_grazed(
     stock: Stock, found: Passed, frame: Frame, sweep: Sweep, progress: Progress
 ) -> None:
-    """Note the rapids that are in material at a place between rays, where no cut before has been."""
+    """Note the rapids that are in material at a position between rays, where no cut before has been."""
     if not found.grazed:
         return
-    moves, places = (
+    moves, positions = (
         np.concatenate([m for m, _ in found.grazed]),
         np.vstack([p for _, p in found.grazed]),
     )
     for row in np.unique(moves):
         progress.check()
-        own = places[moves == row]
-        standing = _standing(stock, own[:, :3], frame, sweep, int(row))
-        if standing.any():
-            k = int(np.argmax(np.where(standing, own[:, 3], -np.inf)))
+        own = positions[moves == row]
+        in_material = _in_material(stock, own[:, :3], frame, sweep, int(row))
+        if in_material.any():
+            k = int(np.argmax(np.where(in_material, own[:, 3], -np.inf)))
             if own[k, 3] > found.depth[row]:
-                found.depth[row], found.place[row] = own[k, 3], own[k, :3]
+                found.depth[row], found.position[row] = own[k, 3], own[k, :3]
 
 
-def _standing(stock: Stock, places: Floats, frame: Frame, sweep: Sweep, row: int) -> Bools:
-    """Return which places (k, 3) in the blank's frame neither a setup before nor a move before `row` has cut."""
-    world = stock.frame.to_world(places)
-    standing = stock.was_solid(places)
-    standing &= ~sweep.cut_before(frame.to_local(world), row)
+def _in_material(stock: Stock, positions: Floats, frame: Frame, sweep: Sweep, row: int) -> Bools:
+    """Return which positions (k, 3) in the blank's frame neither a setup before nor a move before `row` has cut."""
+    world = stock.frame.to_world(positions)
+    in_material = stock.was_solid(positions)
+    in_material &= ~sweep.cut_before(frame.to_local(world), row)
     for before, own in stock.cut_by:
-        standing &= ~before.cut_before(own.to_local(world), len(before.moves))
-    return standing
+        in_material &= ~before.cut_before(own.to_local(world), len(before.moves))
+    return in_material
 
 
-def look_closer(
+def recheck(
     stock: Stock,
     field: Field,
     moves: Moves,
@@ -72,7 +72,7 @@ def look_closer(
     row: int,
     cells: Ints,
     depth: Floats,
-    place: Floats,
+    position: Floats,
 ) -> None:
     """Judge the cells of a height field that an upright rapid grazes by fine columns; those below zero encode -1 - cell, where the
     columns around are gone too and only a fin between them can stand."""
@@ -81,7 +81,7 @@ def look_closer(
     down, across = np.divmod(cells, field.top.shape[1])
     middle = field.low[:2] + (np.column_stack([across, down]) + 0.5) * field.pitch
     half = field.pitch * np.sqrt(0.5)
-    low = _places(moves, row, middle, half)[0]
+    low = _positions(moves, row, middle, half)[0]
     open_ = _cut_around(stock, low, half, frame, sweep, row)
     count = rays_in_cell(field.pitch)
     offsets = ((np.arange(count) + 0.5) / count - 0.5) * field.pitch
@@ -96,19 +96,19 @@ def look_closer(
             (middle[~open_ & fins][:, None] + cross).reshape(-1, 2),
         ]
     )
-    places, rho = _places(moves, row, points, 0.0)
-    inside = np.isfinite(places[:, 2])
+    positions, rho = _positions(moves, row, points, 0.0)
+    inside = np.isfinite(positions[:, 2])
     if not inside.any():
         return
-    places, rho = places[inside], rho[inside]
-    standing = _standing(stock, places, frame, sweep, row)
-    if standing.any():
-        k = int(np.flatnonzero(standing)[np.argmin(rho[standing])])
+    positions, rho = positions[inside], rho[inside]
+    in_material = _in_material(stock, positions, frame, sweep, row)
+    if in_material.any():
+        k = int(np.flatnonzero(in_material)[np.argmin(rho[in_material])])
         depth[row] = max(depth[row], float(moves.tools[moves.tool[row]].radius - rho[k]))
-        place[row] = places[k]
+        position[row] = positions[k]
 
 
-def _places(moves: Moves, row: int, points: Floats, around: float) -> tuple[Floats, Floats]:
+def _positions(moves: Moves, row: int, points: Floats, around: float) -> tuple[Floats, Floats]:
     """Return the lowest position over each plan point (k, 2) that an upright rapid enters by more than is allowed, or at most as high as
     any such position within `around` mm of it, and the point's distance from its path; infinite where it enters nothing."""
     allowed, move, tool = tolerance.RAPID_DEPTH, moves.row[row], moves.tools[moves.tool[row]]
@@ -143,18 +143,18 @@ def _places(moves: Moves, row: int, points: Floats, around: float) -> tuple[Floa
 
 
 def _cut_around(
-    stock: Stock, places: Floats, margin: float, frame: Frame, sweep: Sweep, row: int
+    stock: Stock, positions: Floats, margin: float, frame: Frame, sweep: Sweep, row: int
 ) -> Bools:
-    """Say around which places (k, 3) in the blank's frame all within a margin in plan is gone, as far as single moves show that."""
-    gone = ~np.isfinite(places[:, 2])
+    """Say around which positions (k, 3) in the blank's frame all within a margin in plan is gone, as far as single moves show that."""
+    gone = ~np.isfinite(positions[:, 2])
     for before, own, last in [
         (sweep, frame, row),
         *((s, f, len(s.moves)) for s, f in stock.cut_by),
     ]:
         # What a setup calls plan must be the blank's.
         if own.z @ stock.frame.z > 1.0 - tolerance.PARAMETRIC:
-            ask = np.flatnonzero(~gone)
-            gone[ask] = before.cut_around(
-                own.to_local(stock.frame.to_world(places[ask])), margin, last
+            doubtful = np.flatnonzero(~gone)
+            gone[doubtful] = before.cut_around(
+                own.to_local(stock.frame.to_world(positions[doubtful])), margin, last
             )
     return gone

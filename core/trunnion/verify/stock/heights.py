@@ -14,7 +14,7 @@ from trunnion.verify.kernels.stock import zmap as kernel
 from trunnion.verify.motion import Moves
 from trunnion.verify.profile import cones_of, profiles_of
 from trunnion.verify.stock.engagement import Probes
-from trunnion.verify.stock.graze_check import look_closer
+from trunnion.verify.stock.graze_check import recheck
 from trunnion.verify.stock.rays import Passed
 from trunnion.verify.stock.stock import Stock
 
@@ -22,7 +22,7 @@ CHUNK_CELLS = 10_000_000
 """Columns touched between two looks at cancel, about 0.1 s."""
 RIMS = 200_000
 """Grazed cells looked at together."""
-_RIMS_FULL, _STANDING = 1, 2
+_RIMS_FULL, _UNCUT = 1, 2
 
 
 def run_heights(
@@ -48,10 +48,10 @@ def run_heights(
         np.zeros(n),
     )
     profiles, (cones, cone_start) = profiles_of(moves.tools, moves.bodies), cones_of(moves.tools)
-    work = np.cumsum(_cells_touched(moves, field.pitch))
+    work = np.cumsum(_cell_counts(moves, field.pitch))
     rims, rim_start = np.zeros(RIMS, np.int64), np.zeros(n + 1, np.int64)
     first, why = 0, 0
-    while first < n and why != _STANDING:
+    while first < n and why != _UNCUT:
         progress.at(first / n, "Cutting the stock")
         done = work[first - 1] if first else 0.0
         last = max(first + 1, int(np.searchsorted(work, done + CHUNK_CELLS)))
@@ -89,7 +89,7 @@ def run_heights(
         for row in range(first, stop):
             if sweep is not None and rim_start[row + 1] > rim_start[row]:
                 progress.check()
-                look_closer(
+                recheck(
                     stock,
                     field,
                     moves,
@@ -98,7 +98,7 @@ def run_heights(
                     row,
                     rims[rim_start[row] : rim_start[row + 1]],
                     depth,
-                    found.place,
+                    found.position,
                 )
         if why == _RIMS_FULL and stop == first:
             rims = np.zeros(2 * len(rims), np.int64)
@@ -106,16 +106,16 @@ def run_heights(
     for row in map(
         int,
         np.flatnonzero(
-            (depth > tolerance.RAPID_DEPTH) & (cell >= 0) & np.isnan(found.place[:n, 0])
+            (depth > tolerance.RAPID_DEPTH) & (cell >= 0) & np.isnan(found.position[:n, 0])
         ),
     ):
         at = field.centre(int(cell[row]))
-        found.place[row] = *at, moves.row[row, [columns.Z_START, columns.Z_END]].min()
+        found.position[row] = *at, moves.row[row, [columns.Z_START, columns.Z_END]].min()
     found.removed[:n] += removed * (field.pitch**2 / len(stock.bundles))
     found.depth[:n], found.body[:n] = np.maximum(depth, 0.0), np.maximum(body, 0.0)
-    return first, why == _STANDING
+    return first, why == _UNCUT
 
 
-def _cells_touched(moves: Moves, pitch: float) -> Floats:
+def _cell_counts(moves: Moves, pitch: float) -> Floats:
     radius = moves.cutters[:, 0]
     return (2 * radius * moves.length + np.pi * radius**2) / pitch**2 + 1000.0

@@ -29,13 +29,13 @@ LOOKS = 8_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Passed:
-    """What moves (n,) did: removed mm3 (the mean of the bundles), depth and place (n, 3) in the blank's frame of rapids, how deep what
+    """What moves (n,) did: removed mm3 (the mean of the bundles), depth and position (n, 3) in the blank's frame of rapids, how deep what
     doesn't cut went, and what the probes saw. grazed: moves (k,), and places with depths (k, 4), where rapids may be in material between
     rays."""
 
     removed: Floats
     depth: Floats
-    place: Floats
+    position: Floats
     body: Floats
     tally: Tally
     grazed: list[tuple[Ints, Floats]] = field(default_factory=list)
@@ -53,7 +53,7 @@ class Passed:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Going:
+class BundleStart:
     """A bundle and the first move that goes through it; `looked` when the probes of that move have been looked at."""
 
     bundle: Bundle
@@ -71,7 +71,7 @@ class _Batch:
     bodies: Bodies
     tool: Ints
     rapid: Bools
-    way: Floats
+    motion: Floats
     probes: Probes
     probe_start: Ints
     fine: int
@@ -79,7 +79,7 @@ class _Batch:
 
 def run_rays(
     stock: Stock,
-    going: Sequence[Going],
+    starts: Sequence[BundleStart],
     moves: Moves,
     probes: Probes,
     found: Passed,
@@ -97,13 +97,13 @@ def run_rays(
     whole = whole_arcs(moves, [AXES.index(name) for name in stock.bundles])
     each = spans_each(moves, whole)
     ends = np.cumsum(each)
-    row = min((g.first for g in going), default=n)
-    bundles = [g.bundle for g in going]
+    row = min((g.first for g in starts), default=n)
+    bundles = [g.bundle for g in starts]
     while row < n:
         begun = ends[row] - each[row]
         rows = np.arange(row, max(row + 1, int(np.searchsorted(ends, begun + SPANS, side="right"))))
         spans = spans_of(moves, rows, each[rows], whole[rows])
-        way = np.column_stack(
+        motion = np.column_stack(
             [
                 a[rows]
                 for a in (
@@ -122,7 +122,7 @@ def run_rays(
             moves.bodies,
             moves.tool[rows],
             moves.rapid[rows],
-            way,
+            motion,
             probes,
             probes.start[row : rows[-1] + 2],
             fine,
@@ -143,7 +143,7 @@ def run_rays(
                     last,
                     g.looked and g.first >= row + first,
                 )
-                for g in going
+                for g in starts
                 if g.first < row + last
                 for tile in g.bundle.tiles()
             ]
@@ -183,7 +183,7 @@ class _Job:
 
     def __init__(
         self,
-        going: Going,
+        start: BundleStart,
         tile: tuple[int, int],
         batch: _Batch,
         first: int,
@@ -192,7 +192,7 @@ class _Job:
     ) -> None:
         n = last - first
         self.bundle, self.tile, self.batch, self.first, self.last, self.done = (
-            going.bundle,
+            start.bundle,
             tile,
             batch,
             first,
@@ -200,7 +200,7 @@ class _Job:
             False,
         )
         self.resume = np.array([0, 0, 0, 0, 0, int(looked)])
-        self.removed, self.depth, self.place, self.body = (
+        self.removed, self.depth, self.position, self.body = (
             np.zeros(n),
             np.zeros(n),
             np.full((n, 3), np.nan),
@@ -240,9 +240,9 @@ class _Job:
             self.resume,
             self.removed,
             self.depth,
-            self.place,
+            self.position,
             self.body,
-            m.way[own],
+            m.motion[own],
             m.probes.rings,
             m.probes.flute,
             m.probes.circle,
@@ -261,7 +261,7 @@ class _Job:
         found.body[own] = np.maximum(found.body[own], self.body)
         deeper = np.flatnonzero(self.depth > found.depth[own])
         found.depth[own][deeper] = self.depth[deeper]
-        found.place[own][deeper[:, None], cycle(self.bundle.axis)] = self.place[deeper]
+        found.position[own][deeper[:, None], cycle(self.bundle.axis)] = self.position[deeper]
         seen = slice(self.probe[0], self.probe[-1])
         found.tally.counted[seen] += self.tally.counted
         found.tally.spans[seen] = (

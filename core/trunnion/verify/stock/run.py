@@ -9,13 +9,13 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import Moves, seen_from
 from trunnion.verify.stock.engagement import engagement_of, probes_of
 from trunnion.verify.stock.graze_check import confirm_grazed, rays_in_cell
 from trunnion.verify.stock.heights import run_heights
-from trunnion.verify.stock.rays import Going, Passed, run_rays
+from trunnion.verify.stock.rays import BundleStart, Passed, run_rays
 from trunnion.verify.stock.stock import Stock
 
 
@@ -23,7 +23,7 @@ from trunnion.verify.stock.stock import Stock
 class StockRun:
     """What happened on the way, a row a move.
 
-    removed (n,) mm3; rapid_depth (n,) how deep a rapid goes into stock, 0 when clear; rapid_place (n, 3) in the setup frame, NaN when
+    removed (n,) mm3; rapid_depth (n,) how deep a rapid goes into stock, 0 when clear; rapid_position (n, 3) in the setup frame, NaN when
     clear; body_depth (n,) how deep shank or holder enter stock; engagement (n,) rad, the largest angle of the cutter's circumference in
     material along a feed move, and depth_of_cut (n,) mm along the axis, both 0 for rapids; widest (n,) mm how wide the cut is over the
     diameter's length where it is widest, peak (n,) how many times as wide as on the mean of the path.
@@ -31,7 +31,7 @@ class StockRun:
 
     removed: Floats
     rapid_depth: Floats
-    rapid_place: Floats
+    rapid_position: Floats
     body_depth: Floats
     engagement: Floats
     depth_of_cut: Floats
@@ -44,7 +44,7 @@ def run_stock(
     moves: Moves,
     frame: Frame,
     sweep: Sweep | None = None,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
     threads: int = 0,
 ) -> StockRun:
     """Cut moves given in a setup frame out of the stock (changed in place) and return what each did.
@@ -61,20 +61,23 @@ def run_stock(
     row, looked = run_heights(stock, local, frame, sweep, probes, found, heights)
     if row < len(moves):
         stock.open_field()
-    going = [Going(b) if name != "z" else Going(b, row, looked) for name, b in stock.rays.items()]
-    if going:
+    starts = [
+        BundleStart(b) if name != "z" else BundleStart(b, row, looked)
+        for name, b in stock.rays.items()
+    ]
+    if starts:
         fine = rays_in_cell(stock.pitch) if sweep is not None else 0
-        run_rays(stock, going, local, probes, found, fine, progress.part(0.3, 1.0), threads)
+        run_rays(stock, starts, local, probes, found, fine, progress.part(0.3, 1.0), threads)
     if sweep is not None:
         confirm_grazed(stock, found, frame, sweep, progress.part(1.0, 1.0))
         stock.cut_by.append((sweep, frame))
     rapid_depth = np.where(found.depth > tolerance.RAPID_DEPTH, found.depth, 0.0)
-    place = np.where(rapid_depth[:, None] > 0.0, found.place, np.nan)
+    position = np.where(rapid_depth[:, None] > 0.0, found.position, np.nan)
     engaged = progress.aside(lambda _: engagement_of(probes, found.tally, moves))
     return StockRun(
         removed=found.removed,
         rapid_depth=rapid_depth,
-        rapid_place=frame.to_local(stock.frame.to_world(place)),
+        rapid_position=frame.to_local(stock.frame.to_world(position)),
         body_depth=found.body,
         engagement=engaged.largest,
         depth_of_cut=engaged.depth,

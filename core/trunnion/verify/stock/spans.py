@@ -85,7 +85,7 @@ class _Poses:
     """Where the tools of some moves are, and how they stand."""
 
     def __init__(self, moves: Moves, rows: Ints) -> None:
-        self.start, self.way = moves.start[rows], moves.end[rows] - moves.start[rows]
+        self.start, self.displacement = moves.start[rows], moves.end[rows] - moves.start[rows]
         self.sweep = moves.sweep[rows]
         axis = moves.start_axis[rows]
         self.theta = _turns(moves)[rows]
@@ -97,10 +97,10 @@ class _Poses:
         across = across - (across * axis).sum(axis=1, keepdims=True) * axis
         ahead = np.where((self.theta > 0.0)[:, None], ahead, across)
         self.axis, self.ahead = axis, ahead / np.linalg.norm(ahead, axis=1, keepdims=True)
-        self.beside = np.cross(self.axis, self.ahead)
+        self.across = np.cross(self.axis, self.ahead)
         arc = self.sweep != 0.0
         away = np.where(arc[:, None], self.start - moves.centre[rows], 0.0)
-        self.climb = (self.way * axis).sum(axis=1, keepdims=True) * axis
+        self.climb = (self.displacement * axis).sum(axis=1, keepdims=True) * axis
         self.away = away - (away * axis).sum(axis=1, keepdims=True) * axis
         self.over = np.cross(axis, self.away)
         self.arc = arc[:, None]
@@ -115,11 +115,11 @@ class _Poses:
             + (np.cos(angle) - 1.0) * self.away
             + np.sin(angle) * self.over
         )
-        tip = np.where(self.arc, bent, self.start + t * self.way)
+        tip = np.where(self.arc, bent, self.start + t * self.displacement)
         turn = t * self.theta[:, None]
         axis = self.axis * np.cos(turn) + self.ahead * np.sin(turn)
         ahead = self.ahead * np.cos(turn) - self.axis * np.sin(turn)
-        return tip, np.stack([ahead, self.beside, axis], axis=1)
+        return tip, np.stack([ahead, self.across, axis], axis=1)
 
     def arcs(self) -> Floats:
         """Return centre, direction of the middle, radius and cosine of half the angle of arcs (s, 4, 3), the last two three times."""

@@ -14,7 +14,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.verify.finish.sweep import Sweep
-from trunnion.verify.stock.bundles import AXES, ROOM, Bundle
+from trunnion.verify.stock.bundles import AXES, SPARE, Bundle
 from trunnion.verify.stock.field import Field, Part, cells_along
 
 MOST_BYTES = 2_000_000_000
@@ -93,7 +93,7 @@ class Stock:
         low, high = box or (blank.low, blank.high)
         x, y, z = cells_along(high - low, pitch)
         rays = {"x": y * z, "y": z * x, "z": x * y}
-        ray = 8 * (1 + 2 * ROOM)
+        ray = 8 * (1 + 2 * SPARE)
         return sum(rays[name] * (8 if tuple(bundles) == ("z",) else ray) for name in bundles)
 
     @property
@@ -112,11 +112,11 @@ class Stock:
     def contains(self, points: Floats) -> Bools:
         """Return for points (k, 3) in the blank's frame whether they are in material: what most of the nearest rays say."""
         points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
-        said = [b.contains(points) for b in self.rays.values()] + (
+        votes = [b.contains(points) for b in self.rays.values()] + (
             [self.field.contains(points)] if self.field is not None else []
         )
         inside = ((points >= self.low) & (points <= self.high)).all(axis=1)
-        return np.asarray(inside & (2 * np.sum(said, axis=0) > len(said)))
+        return np.asarray(inside & (2 * np.sum(votes, axis=0) > len(votes)))
 
     def was_solid(self, points: Floats) -> Bools:
         """Return for points (k, 3) in the blank's frame whether they were inside before anything was cut."""
@@ -134,7 +134,7 @@ class Stock:
         """Turn the height field into intervals: from now on anything may be cut."""
         if self.field is not None:
             _refuse(
-                8 * (1 + 2 * ROOM) * self.field.top.size
+                8 * (1 + 2 * SPARE) * self.field.top.size
                 + sum(b.nbytes for b in self.rays.values()),
                 self.pitch,
             )

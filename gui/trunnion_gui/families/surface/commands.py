@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from trunnion_gui.families.surface.view import SurfaceView
 
 
-def add_commands(view: SurfaceView, shell: WindowAccess) -> None:
+def add_commands(view: SurfaceView, window: WindowAccess) -> None:
     """Add them to a window's registry."""
     document, tools = view.document, view.tools
 
@@ -33,7 +33,7 @@ def add_commands(view: SurfaceView, shell: WindowAccess) -> None:
         enabled: Callable[[], bool] = is_free,
         checkable: bool = False,
     ) -> None:
-        shell.registry.add(
+        window.registry.add(
             Command(
                 id=f"patch.{id}",
                 text=text,
@@ -52,11 +52,11 @@ def add_commands(view: SurfaceView, shell: WindowAccess) -> None:
         view.begin_cut(faces[0] if len(faces) == 1 else 0, by_plane)
 
     def mark_local(on: bool) -> None:
-        shell.viewport.give_clicks_to(tools.toggle_face if on else None)
+        window.viewport.give_clicks_to(tools.toggle_face if on else None)
 
     def measure() -> None:
         view.jobs.measure()
-        shell.show_dock("accuracy")
+        window.show_dock("accuracy")
 
     command(
         "local",
@@ -79,7 +79,7 @@ def add_commands(view: SurfaceView, shell: WindowAccess) -> None:
     command(
         "ids",
         "Show IDs",
-        lambda on: shell.viewport.show_layer("ids", on),
+        lambda on: window.viewport.show_layer("ids", on),
         "ids",
         "N",
         "Write the ID of every group on the part, or of every selected face",
@@ -89,7 +89,7 @@ def add_commands(view: SurfaceView, shell: WindowAccess) -> None:
     command(
         "radii",
         "Colours by radius",
-        lambda on: shell.viewport.colour_by(view.by_radius if on else None),
+        lambda on: window.viewport.colour_by(view.by_radius if on else None),
         "radii",
         "R",
         "Colour every group by its smallest concave radius",

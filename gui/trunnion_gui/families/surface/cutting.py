@@ -32,7 +32,7 @@ _CLOSING = 9.0
 """Pixels: a click this near to the first place of a drawn line closes it."""
 _FINE = 24
 """Pieces of the line that is shown between two places."""
-Place = tuple[float, float, float]
+Position = tuple[float, float, float]
 
 
 class CutBar(QWidget):
@@ -44,12 +44,12 @@ class CutBar(QWidget):
         super().__init__()
         self._document, self._jobs, self._scene = document, jobs, scene
         self.face = 0
-        self.places: list[Place] = []
+        self.positions: list[Position] = []
         self._make_widgets()
         row = QHBoxLayout(self)
         row.setContentsMargins(14, 2, 14, 6)
         row.setSpacing(8)
-        for widget in (self.manner, self.value):
+        for widget in (self.method, self.value):
             row.addWidget(widget)
         row.addWidget(self.words, 1)
         for button in (self.back, self.apply, self.close_button):
@@ -66,9 +66,9 @@ class CutBar(QWidget):
 
     def begin(self, face: int, by_plane: bool) -> None:
         """Begin a cut of a face (0: of the one that is clicked next)."""
-        self.places = []
+        self.positions = []
         self.face = 0
-        self._take_manner(AXES[0] if by_plane else DRAWN)
+        self._take_method(AXES[0] if by_plane else DRAWN)
         self.show()
         self._choose(face)
 
@@ -76,7 +76,7 @@ class CutBar(QWidget):
         """Put the bar away."""
         if self.is_on:
             self.hide()
-            self.face, self.places = 0, []
+            self.face, self.positions = 0, []
             self._scene.show_cut((), np.zeros((0, 2, 3)))
             self.ended.emit()
 
@@ -88,17 +88,19 @@ class CutBar(QWidget):
             self._choose(click.face)
         kind = self._kind()
         if kind in AXES:
-            self.value.setValue(click.place[AXES.index(kind)])
+            self.value.setValue(click.position[AXES.index(kind)])
         elif kind == THREE:
-            self.places = [*self.places, click.place] if len(self.places) < 3 else [click.place]
+            self.positions = (
+                [*self.positions, click.position] if len(self.positions) < 3 else [click.position]
+            )
         elif not self._is_closed():
-            self.places.append(self._closed(click.place))
+            self.positions.append(self._closed(click.position))
         self.refresh()
 
     def take_back(self) -> None:
         """Forget the last place."""
-        if self.places:
-            self.places.pop()
+        if self.positions:
+            self.positions.pop()
             self.refresh()
 
     def cut(self) -> Cut | None:
@@ -112,11 +114,11 @@ class CutBar(QWidget):
                 return plane_cut(self.face, tuple(self.value.value() * v for v in normal), normal)  # type: ignore[arg-type]
             if kind == THREE:
                 return (
-                    plane_cut(self.face, self.places[0], self._normal())
-                    if len(self.places) == 3
+                    plane_cut(self.face, self.positions[0], self._normal())
+                    if len(self.positions) == 3
                     else None
                 )
-            return curve_cut(self.face, tuple(self.places)) if len(self.places) > 1 else None
+            return curve_cut(self.face, tuple(self.positions)) if len(self.positions) > 1 else None
         except BadInput:
             return None
 
@@ -127,19 +129,19 @@ class CutBar(QWidget):
         kind, cut = self._kind(), self.cut()
         self.value.setVisible(kind in AXES)
         self.back.setVisible(kind not in AXES)
-        self.back.setEnabled(bool(self.places))
+        self.back.setEnabled(bool(self.positions))
         self.apply.setEnabled(cut is not None and not self._document.is_busy)
         self.words.setText(self._wanted(kind))
-        self._scene.show_cut(self.places, self._line(cut))
+        self._scene.show_cut(self.positions, self._line(cut))
 
     # inside
 
     def _make_widgets(self) -> None:
-        self.manner = QComboBox()
-        self.manner.setSizeAdjustPolicy(
+        self.method = QComboBox()
+        self.method.setSizeAdjustPolicy(
             QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon
         )
-        self.manner.setMinimumContentsLength(12)
+        self.method.setMinimumContentsLength(12)
         for words, kind in (
             (tr("plane across x"), "x"),
             (tr("plane across y"), "y"),
@@ -147,8 +149,8 @@ class CutBar(QWidget):
             (tr("plane through three places"), THREE),
             (tr("along a drawn line"), DRAWN),
         ):
-            self.manner.addItem(words, kind)
-        self.manner.currentIndexChanged.connect(self._change)
+            self.method.addItem(words, kind)
+        self.method.currentIndexChanged.connect(self._change)
         self.value = NumberField()
         self.value.setDecimals(4)
         self.value.setSuffix(" mm")
@@ -173,16 +175,16 @@ class CutBar(QWidget):
         made.clicked.connect(lambda _=False: slot())
         return made
 
-    def _take_manner(self, kind: str) -> None:
-        self.manner.blockSignals(True)
-        self.manner.setCurrentIndex(self.manner.findData(kind))
-        self.manner.blockSignals(False)
+    def _take_method(self, kind: str) -> None:
+        self.method.blockSignals(True)
+        self.method.setCurrentIndex(self.method.findData(kind))
+        self.method.blockSignals(False)
 
     def _kind(self) -> str:
-        return str(self.manner.currentData())
+        return str(self.method.currentData())
 
     def _change(self) -> None:
-        self.places = []
+        self.positions = []
         self._reach()
         self.refresh()
 
@@ -193,7 +195,7 @@ class CutBar(QWidget):
             self._document.selection.select_face_alone(face)
             if self._kind() in AXES:
                 longest = int(np.argmax(np.subtract(*reversed(box_of(mesh, face)))))
-                self._take_manner(AXES[longest])
+                self._take_method(AXES[longest])
         self._reach()
         self.refresh()
 
@@ -209,19 +211,19 @@ class CutBar(QWidget):
         self.value.setValue(0.5 * (low + high))
         self.value.blockSignals(False)
 
-    def _closed(self, place: Place) -> Place:
+    def _closed(self, position: Position) -> Position:
         """Return a place, or the very first one when it is clicked again."""
-        if len(self.places) > 2:
-            away = self._scene.where(place) - self._scene.where(self.places[0])
+        if len(self.positions) > 2:
+            away = self._scene.where(position) - self._scene.where(self.positions[0])
             if abs(away.x()) + abs(away.y()) < _CLOSING:
-                return self.places[0]
-        return place
+                return self.positions[0]
+        return position
 
     def _is_closed(self) -> bool:
-        return len(self.places) > 3 and self.places[-1] == self.places[0]
+        return len(self.positions) > 3 and self.positions[-1] == self.positions[0]
 
-    def _normal(self) -> Place:
-        a, b, c = (np.array(p) for p in self.places)
+    def _normal(self) -> Position:
+        a, b, c = (np.array(p) for p in self.positions)
         x, y, z = np.cross(b - a, c - a)
         return float(x), float(y), float(z)
 
@@ -243,13 +245,13 @@ class CutBar(QWidget):
             return tr("{face}: type where, or click a place of the plane.").format(face=where)
         if kind == THREE:
             return tr("{face}: click three places, {n} are there.").format(
-                face=where, n=len(self.places)
+                face=where, n=len(self.positions)
             )
         if self._is_closed():
             return tr("{face}: the line is closed.").format(face=where)
         return tr(
             "{face}: click places of the line, {n} are there; it is led on to the edge, or closed by a click on the first."
-        ).format(face=where, n=len(self.places))
+        ).format(face=where, n=len(self.positions))
 
     def _cut(self) -> None:
         cut = self.cut()

@@ -22,29 +22,29 @@ class EstimateSource(QObject):
         self._document = document
         self.shown: requests.EstimatedTimes | None = None
         self._source: tuple[object, object] = (None, None)
-        self._asked = 0
+        self._requested = 0
         document.jobs.worker.replied.connect(self._receive)
         document.jobs.worker.restarted.connect(self._restart)
         document.changed.connect(self._follow)
         document.jobs.changed.connect(self._follow)
 
     def _restart(self) -> None:
-        self._asked, self._source = 0, (None, None)
+        self._requested, self._source = 0, (None, None)
 
     def _follow(self) -> None:
         session = self._document.session
         source = (session.process, session.paths)
         if self._document.is_busy or all(a is b for a, b in zip(source, self._source, strict=True)):
             return
-        self._source, self._asked = source, 0
+        self._source, self._requested = source, 0
         if _has_areas(session):
-            self._asked = self._document.jobs.worker.send(requests.estimate, session)
+            self._requested = self._document.jobs.worker.send(requests.estimate, session)
         else:
             self._show(None)
 
     def _receive(self, reply: Reply) -> None:
-        if reply.is_last and reply.number == self._asked:
-            self._asked = 0
+        if reply.is_last and reply.number == self._requested:
+            self._requested = 0
             self._show(reply.value if reply.kind == "done" else None)
 
     def _show(self, found: requests.EstimatedTimes | None) -> None:

@@ -26,7 +26,7 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import feature_colours
 from trunnion_gui.widgets.table import colour_icon
 
-REMAINING, CHOSEN = "remaining", "chosen"
+REMAINING, SELECTED = "remaining", "chosen"
 SUFFIXES = {"STEP": (".step", ".stp"), "IGES": (".igs", ".iges")}
 _LINES = 10
 
@@ -60,7 +60,7 @@ class ExportDialog(QDialog):
             if set(f.tags) & set(self._document.selection.current.faces)
         }
         if self._ticked:
-            self.parts[CHOSEN].setChecked(True)
+            self.parts[SELECTED].setChecked(True)
         self._fill()
         self.refresh()
         self.show()
@@ -68,10 +68,10 @@ class ExportDialog(QDialog):
 
     def words(self) -> tuple[str, ...]:
         """Return what shall be exported, as the engine takes it."""
-        chosen = next(name for name, button in self.parts.items() if button.isChecked())
+        part = next(name for name, button in self.parts.items() if button.isChecked())
         return (
-            (chosen,)
-            if chosen != CHOSEN
+            (part,)
+            if part != SELECTED
             else tuple(f.id for f in self._groups() if f.id in self._ticked)
         )
 
@@ -82,12 +82,14 @@ class ExportDialog(QDialog):
             return
         kind = next(name for name, button in self.formats.items() if button.isChecked())
         what = words[0] if len(words) == 1 else f"{len(words)}-groups"
-        path = self._ask_path(f"{Path(part.path).with_suffix('')}.{what}{SUFFIXES[kind][0]}", kind)
+        path = self._choose_path(
+            f"{Path(part.path).with_suffix('')}.{what}{SUFFIXES[kind][0]}", kind
+        )
         if path:
             right = Path(path).suffix.lower() in SUFFIXES[kind]
             self._jobs.export(words, path if right else path + SUFFIXES[kind][0])
 
-    def _ask_path(self, proposed: str, kind: str) -> str:
+    def _choose_path(self, proposed: str, kind: str) -> str:
         """Ask which STEP or IGES file patches are written to; empty when none was chosen. Tests replace this."""
         return QFileDialog.getSaveFileName(
             self.parentWidget(),
@@ -114,7 +116,7 @@ class ExportDialog(QDialog):
                 n=sum(len(f.tags) for f in groups), groups=len(groups)
             )
         )
-        self.list.setEnabled(self.parts[CHOSEN].isChecked())
+        self.list.setEnabled(self.parts[SELECTED].isChecked())
         self.export_button.setEnabled(bool(groups) and not self._document.is_busy)
 
     def _groups(self) -> list:
@@ -153,7 +155,7 @@ class ExportDialog(QDialog):
         for name, words in (
             (LOCAL, tr("Local features")),
             (REMAINING, tr("Remaining area")),
-            (CHOSEN, tr("These groups")),
+            (SELECTED, tr("These groups")),
         ):
             self.parts[name] = self._radio(words, self._whats)
             column.addWidget(self.parts[name])

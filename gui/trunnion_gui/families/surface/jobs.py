@@ -68,7 +68,7 @@ class PatchJobs(QObject):
             tr("exporting {name}").format(name=Path(path).name),
             what,
             path,
-            finish=lambda n: self._document.said.emit(
+            finish=lambda n: self._document.reported.emit(
                 tr("{n} faces written to {path}").format(n=n, path=path)
             ),
         )

@@ -78,22 +78,22 @@ class SurfaceView(FamilyView):
 
     def add_feature_entries(self, menu: QMenu, feature: Feature) -> None:
         self.tools.add_entries(menu, feature.tags)
-        chosen = self.document.selection.current
-        if chosen.kind == "faces" and not set(chosen.faces) <= set(feature.tags):
+        selected = self.document.selection.current
+        if selected.kind == "faces" and not set(selected.faces) <= set(feature.tags):
             menu.addAction(
                 icons.icon("move_faces"),
                 tr("Take the selected faces in"),
-                lambda: self.jobs.move(chosen.faces, feature.id),
+                lambda: self.jobs.move(selected.faces, feature.id),
             )
 
-    def add_commands(self, shell: WindowAccess) -> None:
-        add_commands(self, shell)
+    def add_commands(self, window: WindowAccess) -> None:
+        add_commands(self, window)
 
-    def begin(self, shell: WindowAccess) -> None:
-        self.cutting = CutBar(self.document, self.jobs, shell.viewport.scene)
-        shell.viewport.add_bar(self.cutting)
-        shell.viewport.add_tool(self.cutting)
-        self.export_dialog = ExportDialog(self.document, self.jobs, shell.viewport.window())
+    def begin(self, window: WindowAccess) -> None:
+        self.cutting = CutBar(self.document, self.jobs, window.viewport.scene)
+        window.viewport.add_bar(self.cutting)
+        window.viewport.add_tool(self.cutting)
+        self.export_dialog = ExportDialog(self.document, self.jobs, window.viewport.window())
 
     def begin_cut(self, face: int, by_plane: bool) -> None:
         """Begin to cut a face (0: the one that is clicked next), by a plane or along a line that is drawn."""

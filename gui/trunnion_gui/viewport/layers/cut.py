@@ -12,7 +12,7 @@ from trunnion_gui.look.colours import Theme
 
 
 def draw_cut(
-    view: Any, places: Sequence[tuple[float, float, float]], line: np.ndarray, theme: Theme
+    view: Any, positions: Sequence[tuple[float, float, float]], line: np.ndarray, theme: Theme
 ) -> None:
     """Show places as points and a line of pieces (k, 2, 3), in front of the part; what is empty is not drawn."""
     for name in ("cut places", "cut line"):
@@ -33,10 +33,10 @@ def draw_cut(
                 show_scalar_bar=False,
             )
         )
-    if places:
+    if positions:
         _in_front(
             view.add_mesh(
-                pv.PolyData(np.array(places, np.float32)),
+                pv.PolyData(np.array(positions, np.float32)),
                 color=theme.bad,
                 point_size=10.0,
                 style="points",

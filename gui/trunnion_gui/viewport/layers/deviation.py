@@ -49,7 +49,7 @@ class DeviationLayer:
         row = self._picker.at(x, y, renderer) - 1
         if row < 0:
             return None
-        place = self._picker.point
+        position = self._picker.point
         corners = self._map.triangles[row]
-        away = np.linalg.norm(self._map.points[corners] - np.asarray(place), axis=1)
-        return int(self._map.face[row]), float(self._map.value[corners[np.argmin(away)]]), place
+        away = np.linalg.norm(self._map.points[corners] - np.asarray(position), axis=1)
+        return int(self._map.face[row]), float(self._map.value[corners[np.argmin(away)]]), position

@@ -42,7 +42,7 @@ def draw_names(
     view.remove_actor("names-points", render=False)
     if names:
         view.add_point_labels(
-            np.array([place for _, place in names], dtype=float),
+            np.array([position for _, position in names], dtype=float),
             [words for words, _ in names],
             name="names",
             font_size=12,

@@ -67,12 +67,12 @@ class PartLayer:
 
     def outline(self, name: str, faces: Iterable[int], colour: str, width: float) -> None:
         """Draw a line around some faces, or none."""
-        chosen = np.isin(self._edge_faces, np.fromiter(faces, int))
-        if not chosen.any():
+        is_selected = np.isin(self._edge_faces, np.fromiter(faces, int))
+        if not is_selected.any():
             self._view.remove_actor(name, render=False)
             return
         actor = self._view.add_mesh(
-            _lines(self._mesh.points, self._ends[chosen]),
+            _lines(self._mesh.points, self._ends[is_selected]),
             color=colour,
             line_width=width,
             name=name,

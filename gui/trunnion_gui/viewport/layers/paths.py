@@ -55,13 +55,13 @@ def draw_paths(
                 lighting=False,
                 show_scalar_bar=False,
             )
-    standing = _standing(listed, size)
-    if len(standing) and wanted[0]:
+    axis_strokes = _axis_strokes(listed, size)
+    if len(axis_strokes) and wanted[0]:
         lines = np.column_stack(
-            [np.full(len(standing), 2), np.arange(2 * len(standing)).reshape(-1, 2)]
+            [np.full(len(axis_strokes), 2), np.arange(2 * len(axis_strokes)).reshape(-1, 2)]
         ).ravel()
         view.add_mesh(
-            pv.PolyData(standing.reshape(-1, 3).astype(np.float32), lines=lines),
+            pv.PolyData(axis_strokes.reshape(-1, 3).astype(np.float32), lines=lines),
             color=axis_colour(),
             line_width=1.4,
             opacity=0.85,
@@ -73,7 +73,7 @@ def draw_paths(
         )
 
 
-def _standing(paths: list[tuple[Toolpath, Frame]], size: float) -> np.ndarray:
+def _axis_strokes(paths: list[tuple[Toolpath, Frame]], size: float) -> np.ndarray:
     """Return the strokes (k, 2, 3) of the paths on which the tool leans, in the part's coordinates."""
     made = [
         frame.to_world(

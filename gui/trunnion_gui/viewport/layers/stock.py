@@ -50,10 +50,10 @@ def surface_of(points: np.ndarray, triangles: np.ndarray, colours: np.ndarray) -
         numpy_to_vtkIdTypeArray(np.arange(0, 3 * n + 1, 3, dtype=np.int64), deep=True),
         numpy_to_vtkIdTypeArray(triangles.astype(np.int64).ravel(), deep=True),
     )
-    places = vtkPoints()
-    places.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
+    vtk_points = vtkPoints()
+    vtk_points.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
     surface = pv.PolyData()
-    surface.SetPoints(places)
+    surface.SetPoints(vtk_points)
     surface.SetPolys(cells)
     shown = numpy_to_vtk(np.ascontiguousarray(colours), deep=True)
     shown.SetName("rgb")

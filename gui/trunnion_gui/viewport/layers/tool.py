@@ -76,9 +76,9 @@ def draw_trail(view: Any, points: np.ndarray, rapid: np.ndarray) -> None:
         numpy_to_vtkIdTypeArray(np.repeat(np.arange(k + 1), 2)[1:-1].astype(np.int64), deep=True),
     )
     line = pv.PolyData()
-    places = vtkPoints()
-    places.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
-    line.SetPoints(places)
+    vtk_points = vtkPoints()
+    vtk_points.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=np.float32), deep=True))
+    line.SetPoints(vtk_points)
     line.SetLines(cells)
     palette = np.array([rgb(tool_colours()[name]) for name in ("feed", "rapid")], np.uint8)
     shown = numpy_to_vtk(palette[rapid.astype(int)], deep=True)
@@ -129,9 +129,12 @@ def cutter_outline(tool: Tool) -> Outline:
         big, high = tool.barrel_radius, tool.widest_height
         centre = r - big
         # The tip's arc and the flank's touch on the line through both centres.
-        touch = math.degrees(math.atan2(c - high, -centre))
+        tangent_angle = math.degrees(math.atan2(c - high, -centre))
         last = math.degrees(math.asin(min((top - high) / big, 1.0)))
-        return [*_arc(0.0, c, c, -90.0, touch), *_arc(centre, high, big, touch, last)]
+        return [
+            *_arc(0.0, c, c, -90.0, tangent_angle),
+            *_arc(centre, high, big, tangent_angle, last),
+        ]
     return [(0.0, 0.0), *_arc(r - c, c, c, -90.0, 0.0), (r, top)]
 
 

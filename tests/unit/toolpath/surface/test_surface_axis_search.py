@@ -15,7 +15,7 @@ from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
 from trunnion.pipeline.planning.clearance import ToolClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import tip_at
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.toolpath.contact_passes.axis_fields import fixed, leaning
 from trunnion.toolpath.contact_passes.axis_search import (
@@ -23,7 +23,7 @@ from trunnion.toolpath.contact_passes.axis_search import (
     LeanLimits,
     free_axes,
     leaned,
-    roomy,
+    thickened,
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, slerp
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
@@ -48,7 +48,7 @@ class Boxes:
 
 
 def asker(*boxes, tool=BALL, lowest=-1.0):
-    return ToolClearanceQuery(Boxes(*boxes, lowest=lowest), roomy(tool, 0.2))
+    return ToolClearanceQuery(Boxes(*boxes, lowest=lowest), thickened(tool, 0.2))
 
 
 def straight(length=30.0, n=61, y=0.0):
@@ -77,7 +77,7 @@ WALL = ((-50.0, 4.0, -5.0), (90.0, 20.0, 60.0))
 
 
 def poses(way, course, tool=BALL):
-    at = np.clip(np.round(course.place).astype(int), 0, len(way) - 1)
+    at = np.clip(np.round(course.position).astype(int), 0, len(way) - 1)
     return tip_at(tool, way.point[at], way.normal[at], course.axis)
 
 
@@ -112,7 +112,7 @@ def test_in_a_deep_slot_no_axis_is_free_and_the_pass_has_a_gap() -> None:
         asker(*slot),
         LeanLimits(steepest=math.radians(30.0)),
     )
-    gone = course.place[~course.free]
+    gone = course.position[~course.free]
     assert 20.0 < gone.min() < 45.0 and 55.0 < gone.max() < 80.0
     assert len(course.runs()) == 2
     assert all(run.free.all() for run in course.runs())
@@ -136,18 +136,18 @@ def test_round_an_edge_axes_turn_no_faster_than_allowed() -> None:
     way, limits = edge(), LeanLimits(turn=math.radians(10.0))
     (course,) = free_axes([way], WANTED, BALL, None, limits)
     assert course.free.all() and not course.leap[1:].any()
-    travel = np.interp(course.place, np.arange(len(way)), way.travel(3.0))
+    travel = np.interp(course.position, np.arange(len(way)), way.travel(3.0))
     rate = angle_between(course.axis[1:], course.axis[:-1]) / np.diff(travel)
     assert np.degrees(rate.max()) < 10.0
-    at = np.clip(np.round(course.place).astype(int), 0, len(way) - 1)
+    at = np.clip(np.round(course.position).astype(int), 0, len(way) - 1)
     assert np.degrees(angle_between(course.axis, way.normal[at])).max() < 75.0 + 5.0
 
 
 def test_what_lies_alike_is_asked_once() -> None:
     ways = [straight(y=0.1 * k) for k in range(8)]
     one, many = Boxes(WALL), Boxes(WALL)
-    free_axes(ways[:1], WANTED, BALL, ToolClearanceQuery(one, roomy(BALL, 0.2)), LeanLimits())
-    free_axes(ways, WANTED, BALL, ToolClearanceQuery(many, roomy(BALL, 0.2)), LeanLimits())
+    free_axes(ways[:1], WANTED, BALL, ToolClearanceQuery(one, thickened(BALL, 0.2)), LeanLimits())
+    free_axes(ways, WANTED, BALL, ToolClearanceQuery(many, thickened(BALL, 0.2)), LeanLimits())
     assert many.asked < 3 * one.asked
 
 
@@ -155,10 +155,10 @@ def test_a_move_that_touches_makes_the_search_choose_others() -> None:
     search = AxisSearch(
         [straight()], WANTED, BALL, asker(((-99.0, -99.0, -9.0), (99.0, 99.0, 0.0))), LeanLimits()
     )
-    (before,) = search.courses()
+    (before,) = search.found_axes()
     for _ in range(4):
         search.met(0, np.array([30.5]))
-        (after,) = search.courses()
+        (after,) = search.found_axes()
     assert np.abs(after.axis - before.axis).max() > 0.05 and after.free.all()
 
 
@@ -208,7 +208,13 @@ def test_leaned_passes_reach_beside_a_wall_where_upright_ones_touch() -> None:
 def over_a_floor(ask=None, tool=BALL, **chosen):
     drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=8, high=(20.0, 6.0)), height=0.1)
     return parallel(
-        replace(drive, ask=ask), tool, DATA, stock, setup, choose(ParallelSettings, chosen), QUIET
+        replace(drive, query_for=ask),
+        tool,
+        DATA,
+        stock,
+        setup,
+        choose(ParallelSettings, chosen),
+        NO_PROGRESS,
     )
 
 

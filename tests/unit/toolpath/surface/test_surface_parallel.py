@@ -14,7 +14,7 @@ from trunnion.geometry.kernels.cutter_contact.drop_cutter import drop_cutter
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.surface.parallel import ParallelSettings, _joined, _Planes, _runs, parallel
 from verify_tools import bull
 
@@ -23,7 +23,7 @@ BALL = bull(6.0, 3.0)()
 
 def planned(skin, tool=BALL, faces=(1,), allowance=0.0, height=0.004, **chosen):
     drive, setup, stock = driven(skin, faces=faces, allowance=allowance, height=height)
-    return parallel(drive, tool, DATA, stock, setup, ParallelSettings(**chosen), QUIET), drive
+    return parallel(drive, tool, DATA, stock, setup, ParallelSettings(**chosen), NO_PROGRESS), drive
 
 
 def cuts(path):
@@ -190,7 +190,7 @@ def test_runs_that_go_on_past_what_is_looked_at_end_there():
         triangles=np.zeros(0, np.int64),
     )
     plane, runs = _runs(
-        planes, 0.5, 1.0, lambda plane, run, progress: (plane == 0) | (run > 3.0), QUIET
+        planes, 0.5, 1.0, lambda plane, run, progress: (plane == 0) | (run > 3.0), NO_PROGRESS
     )
     assert plane.tolist() == [0, 1]
     assert (

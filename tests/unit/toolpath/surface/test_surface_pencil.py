@@ -12,7 +12,7 @@ from trunnion.findings import Refused
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.surface.pencil import PencilSettings, pencil
 from verify_tools import bull, flat
 
@@ -28,7 +28,7 @@ def valley(slope=1.0):
 
 def planned(skin: Skin, tool=BALL, faces=(1, 2), earlier=None, **chosen):
     drive, setup, stock = driven(skin, faces=faces, height=0.01, earlier=earlier)
-    return pencil(drive, tool, DATA, stock, setup, PencilSettings(**chosen), QUIET), drive
+    return pencil(drive, tool, DATA, stock, setup, PencilSettings(**chosen), NO_PROGRESS), drive
 
 
 def cut_tips(path):

@@ -17,7 +17,7 @@ from trunnion.model.motion.toolpath import Motion
 from trunnion.pipeline.planning.clearance import ToolClearanceQuery
 from trunnion.settings import choose
 from trunnion.toolpath.contact_passes.axis_fields import fixed, leaning
-from trunnion.toolpath.contact_passes.axis_search import LeanLimits, roomy
+from trunnion.toolpath.contact_passes.axis_search import LeanLimits, thickened
 from trunnion.toolpath.contact_passes.contacts import Contacts, slerp
 from trunnion.toolpath.contact_passes.passes import UPRIGHT
 from trunnion.toolpath.surface.point import PointSettings, field_of, grooving, milled, point
@@ -91,7 +91,7 @@ def test_a_ball_stays_within_the_chord_error_of_a_face_all_along_its_blocks(face
     way, distance = FACES[face]
     done = milled([way], BALL, LEAD, None, LeanLimits(turn=math.radians(40.0)), CHORD)
     off = np.concatenate([distance(centres(one, BALL.radius)) for one in done.passes]) - BALL.radius
-    assert done.left == approx(0.0, abs=1e-9)
+    assert done.remaining == approx(0.0, abs=1e-9)
     # Between contacts the way is a cubic: it leaves the face by a little.
     assert np.abs(off).max() < 1.2 * CHORD + 2e-5
 
@@ -160,7 +160,7 @@ class Boxes:
         return self._contact.clear(moves, 0.006)
 
     def __call__(self, tool):
-        return ToolClearanceQuery(self, roomy(tool, 0.2))
+        return ToolClearanceQuery(self, thickened(tool, 0.2))
 
 
 FLOOR = ((-60.0, -60.0, -9.0), (90.0, 90.0, 0.0))
@@ -175,7 +175,7 @@ def strip(high=8.0):
 def planned(ask, tool=BALL, high=8.0, **chosen):
     drive, setup, stock = strip(high)
     return point(
-        replace(drive, ask=ask), tool, DATA, stock, setup, choose(PointSettings, chosen)
+        replace(drive, query_for=ask), tool, DATA, stock, setup, choose(PointSettings, chosen)
     ), setup
 
 
@@ -257,7 +257,12 @@ def test_after_an_earlier_cutter_only_what_it_left_is_milled() -> None:
         ),
     )
     plan = point(
-        replace(drive, ask=ask, earlier=large), LONG, DATA, stock, setup, choose(PointSettings, {})
+        replace(drive, query_for=ask, earlier=large),
+        LONG,
+        DATA,
+        stock,
+        setup,
+        choose(PointSettings, {}),
     )
     cut = plan.path.position[plan.path.mark == 0] + 3.0 * plan.path.axis[plan.path.mark == 0]
     # The earlier cutter had come to y = 4: passes are 1 mm apart, and one more overlaps what it did.
@@ -270,7 +275,7 @@ def test_after_an_earlier_cutter_only_what_it_left_is_milled() -> None:
 def test_where_an_earlier_cutter_left_nothing_there_is_nothing_to_do() -> None:
     drive, setup, stock = strip(high=4.0)
     plan = point(
-        replace(drive, ask=Boxes(FLOOR), earlier=BALL),
+        replace(drive, query_for=Boxes(FLOOR), earlier=BALL),
         BALL,
         DATA,
         stock,

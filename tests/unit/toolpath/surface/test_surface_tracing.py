@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from trunnion.findings import Cancelled
 from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.progress import Progress
-from trunnion.toolpath.contact_passes.upright.tracing import beside, follow, thinned
+from trunnion.toolpath.contact_passes.upright.tracing import chord_distance, follow, thinned
 
 BALL = np.array([[0.0, 3.0, 1.0, 0.0, 3.0, 3.0]])
 FLAT = np.array([[0.0, 3.0, 0.0, 0.0, 0.0, 0.0]])
@@ -35,7 +35,7 @@ def farthest(surface, pieces, path, shares=7):
     for share in np.linspace(0.0, 1.0, shares):
         places = path[:-1] + share * np.diff(path, axis=0)
         found = np.column_stack([places[:, :2], surface.drop(places[:, :2], pieces, LOWEST)])
-        worst = max(worst, beside(found, path[:-1], path[1:]).max())
+        worst = max(worst, chord_distance(found, path[:-1], path[1:]).max())
     return worst
 
 

@@ -12,7 +12,7 @@ from trunnion.findings import Refused
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
-from trunnion.progress import QUIET
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.surface.waterline import WaterlineSettings, waterline
 from verify_tools import bull, flat
 
@@ -51,7 +51,9 @@ def round_wall(radius, foot, top, n=90, lean=0.0, tag=1):
 
 def planned(skin, tool, faces=(1,), allowance=0.0, height=0.01, **chosen):
     drive, setup, stock = driven(skin, faces=faces, allowance=allowance, height=height)
-    return waterline(drive, tool, DATA, stock, setup, WaterlineSettings(**chosen), QUIET), drive
+    return waterline(
+        drive, tool, DATA, stock, setup, WaterlineSettings(**chosen), NO_PROGRESS
+    ), drive
 
 
 def cut_tips(path):

@@ -26,7 +26,7 @@ from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
-from trunnion.toolpath.motion.reorient import joined, swing_of
+from trunnion.toolpath.motion.reorient import clearance_sphere, joined
 from verify_tools import (
     BLANK,
     FLOOR,
@@ -199,7 +199,7 @@ def as_posted(*sections):
     changes = [
         not n or s.tool.number != sections[n - 1].tool.number for n, s in enumerate(sections)
     ]
-    led = joined([s.path for s in sections], changes, swing_of(BLANK, SETUP))
+    led = joined([s.path for s in sections], changes, clearance_sphere(BLANK, SETUP))
     program = Program(
         name="test",
         setup=SETUP,

@@ -111,9 +111,9 @@ def _facet_drop(point: Floats, corners: Floats, pieces: Floats) -> float:
     uphill = np.divide(
         gradient, steep[:, None], out=np.zeros_like(gradient), where=steep[:, None] > 0.0
     )
-    touch = point + rho[:, None] * uphill
-    inside = _contains(touch, a, b, c)
-    z = a[:, 2] + ((touch - a[:, :2]) * gradient).sum(axis=1) - height_at(pieces, rho)
+    contact = point + rho[:, None] * uphill
+    inside = _contains(contact, a, b, c)
+    z = a[:, 2] + ((contact - a[:, :2]) * gradient).sum(axis=1) - height_at(pieces, rho)
     return float(z[inside].max(initial=-np.inf))
 
 
@@ -144,18 +144,18 @@ def _edge_drop(point: Floats, corners: Floats, pieces: Floats) -> float:
     along, rise = run[:, :2] / length[:, None], run[:, 2] / length
     away = start[:, :2] - point
     foot = -(away * along).sum(axis=1)
-    beside = np.abs(away[:, 0] * along[:, 1] - away[:, 1] * along[:, 0])
-    reach = np.sqrt(np.clip(pieces[-1, RHO1] ** 2 - beside**2, 0.0, None))
+    lateral = np.abs(away[:, 0] * along[:, 1] - away[:, 1] * along[:, 0])
+    reach = np.sqrt(np.clip(pieces[-1, RHO1] ** 2 - lateral**2, 0.0, None))
     low, high = np.maximum(-foot, -reach), np.minimum(length - foot, reach)
-    meets = (beside <= pieces[-1, RHO1]) & (low <= high)
-    start, foot, beside, rise, low, high = (
-        v[meets] for v in (start, foot, beside, rise, low, high)
+    meets = (lateral <= pieces[-1, RHO1]) & (low <= high)
+    start, foot, lateral, rise, low, high = (
+        v[meets] for v in (start, foot, lateral, rise, low, high)
     )
     # u runs along the edge from the foot of the axis; the tip's height, z(u) - g(sqrt(beside^2 +
     # u^2)), is concave in it.
     for _ in range(HALVINGS):
         u = 0.5 * (low + high)
-        rho = np.hypot(beside, u)
+        rho = np.hypot(lateral, u)
         share = np.divide(u, rho, out=np.zeros_like(u), where=rho > 0.0)
         slope = np.multiply(slope_at(pieces, rho), share, out=np.zeros_like(u), where=share != 0.0)
         low, high = np.where(slope < rise, u, low), np.where(slope < rise, high, u)
@@ -166,6 +166,6 @@ def _edge_drop(point: Floats, corners: Floats, pieces: Floats) -> float:
             best,
             start[:, 2]
             + rise * (foot + u)
-            - height_at(pieces, np.minimum(np.hypot(beside, u), pieces[-1, RHO1])),
+            - height_at(pieces, np.minimum(np.hypot(lateral, u), pieces[-1, RHO1])),
         )
     return float(best.max(initial=-np.inf))

@@ -109,7 +109,7 @@ def _contact_radius(pieces: Floats, steep: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _edge_contact_offset(pieces: Floats, beside: float, rise: float, reach: float) -> float:
+def _edge_contact_offset(pieces: Floats, lateral: float, rise: float, reach: float) -> float:
     """Return how far (u, mm) from the foot of the axis, 0 to `reach`, an edge that climbs by `rise` >=
     0 touches, at a distance beside the axis.
 
@@ -119,10 +119,10 @@ def _edge_contact_offset(pieces: Floats, beside: float, rise: float, reach: floa
     """
     low = 0.0
     for k in range(len(pieces)):
-        if pieces[k, RHO1] <= beside:
+        if pieces[k, RHO1] <= lateral:
             continue
-        high = min(math.sqrt(pieces[k, RHO1] * pieces[k, RHO1] - beside * beside), reach)
-        rho = math.sqrt(beside * beside + high * high)
+        high = min(math.sqrt(pieces[k, RHO1] * pieces[k, RHO1] - lateral * lateral), reach)
+        rho = math.sqrt(lateral * lateral + high * high)
         # The piece's slope along the edge at its outer end, compared without a division: the root
         # is 0 at a vertical end.
         if pieces[k, ROUND] != 0.0:
@@ -132,14 +132,14 @@ def _edge_contact_offset(pieces: Floats, beside: float, rise: float, reach: floa
         else:
             steeper = pieces[k, B] * high >= rise * rho
         if steeper:
-            return _piece_contact_offset(pieces[k], beside, rise, low, high)
+            return _piece_contact_offset(pieces[k], lateral, rise, low, high)
         low = high
     return reach
 
 
 @njit(cache=True, nogil=True)
 def _piece_contact_offset(
-    piece: Floats, beside: float, rise: float, low: float, high: float
+    piece: Floats, lateral: float, rise: float, low: float, high: float
 ) -> float:
     """Return where (u, mm) one piece is as steep along an edge as the edge climbs, between two
     distances from the foot.
@@ -149,17 +149,17 @@ def _piece_contact_offset(
     if piece[ROUND] == 0.0:
         # Cone: B u / rho = rise.
         square = piece[B] * piece[B] - rise * rise
-        return min(max(rise * beside / math.sqrt(square), low), high) if square > 0.0 else high
+        return min(max(rise * lateral / math.sqrt(square), low), high) if square > 0.0 else high
     a, c = piece[A], piece[C]
     # Sphere about the axis: u = rise sqrt((c^2 - beside^2) / (1 + rise^2)).
     if a == 0.0:
         return min(
-            max(rise * math.sqrt(max((c * c - beside * beside) / (1.0 + rise * rise), 0.0)), low),
+            max(rise * math.sqrt(max((c * c - lateral * lateral) / (1.0 + rise * rise), 0.0)), low),
             high,
         )
     u = 0.5 * (low + high)
     for _ in range(STEPS):
-        rho = math.sqrt(beside * beside + u * u)
+        rho = math.sqrt(lateral * lateral + u * u)
         out = rho - a
         root = math.sqrt(max(c * c - out * out, _TINY))
         k = out / root
@@ -169,7 +169,7 @@ def _piece_contact_offset(
         else:
             low = u
         # d/du of g'(rho) u / rho: g'' (u / rho)^2 + g' beside^2 / rho^3, with g'' = c^2 / root^3.
-        bend = c * c / (root * root * root) * (u / rho) ** 2 + k * beside * beside / (
+        bend = c * c / (root * root * root) * (u / rho) ** 2 + k * lateral * lateral / (
             rho * rho * rho
         )
         step = u - value / bend if bend > 0.0 else low
@@ -212,16 +212,16 @@ def _edge_drop(
     ):
         return best
     length = math.sqrt(square)
-    beside, foot = abs(cross) / length, -((ax - px) * dx + (ay - py) * dy) / length
+    lateral, foot = abs(cross) / length, -((ax - px) * dx + (ay - py) * dy) / length
     # The stretch of the edge under the cutter, by u from the foot of the axis.
-    reach = math.sqrt(max(radius * radius - beside * beside, 0.0))
+    reach = math.sqrt(max(radius * radius - lateral * lateral, 0.0))
     rise = (bz - az) / length
     low, high = max(-foot, -reach), min(length - foot, reach)
     if low > high:
         return best
     # The tip's height along an edge is concave: its tangent in the middle bounds it, and most edges need no more.
     middle = 0.5 * (low + high)
-    rho = math.sqrt(beside * beside + middle * middle)
+    rho = math.sqrt(lateral * lateral + middle * middle)
     fall = _profile_slope(pieces, rho) * middle / rho if rho > 0.0 else 0.0
     if (
         az
@@ -231,7 +231,7 @@ def _edge_drop(
         <= best
     ):
         return best
-    u = _edge_contact_offset(pieces, beside, abs(rise), reach)
+    u = _edge_contact_offset(pieces, lateral, abs(rise), reach)
     if rise < 0.0:
         u = -u
     if u < -foot:
@@ -240,7 +240,7 @@ def _edge_drop(
         u = length - foot
     if abs(u) > reach:
         return best
-    rho = min(math.sqrt(beside * beside + u * u), radius)
+    rho = min(math.sqrt(lateral * lateral + u * u), radius)
     return max(best, az + rise * (foot + u) - _profile_height(pieces, rho))
 
 
@@ -265,21 +265,21 @@ def _edge_drop_ball(
     if square == 0.0:
         return best
     cross = (ax - px) * dy - (ay - py) * dx
-    beside = cross * cross / square
-    if beside > radius * radius:
+    lateral = cross * cross / square
+    if lateral > radius * radius:
         return best
     length = math.sqrt(square)
     foot, reach, rise = (
         -((ax - px) * dx + (ay - py) * dy) / length,
-        math.sqrt(radius * radius - beside),
+        math.sqrt(radius * radius - lateral),
         (bz - az) / length,
     )
     low, high = max(-foot, -reach), min(length - foot, reach)
     if low > high:
         return best
-    u = min(max(rise * math.sqrt((ball * ball - beside) / (1.0 + rise * rise)), low), high)
+    u = min(max(rise * math.sqrt((ball * ball - lateral) / (1.0 + rise * rise)), low), high)
     return max(
-        best, az + rise * (foot + u) - ball + math.sqrt(max(ball * ball - beside - u * u, 0.0))
+        best, az + rise * (foot + u) - ball + math.sqrt(max(ball * ball - lateral - u * u, 0.0))
     )
 
 
@@ -509,15 +509,15 @@ def _edge_contact_share(
     length = math.sqrt(dx * dx + dy * dy)
     if length == 0.0:
         return 0.0 if f[a + 2] > f[b + 2] else 1.0
-    beside, foot = (
+    lateral, foot = (
         abs((f[a] - px) * dy - (f[a + 1] - py) * dx) / length,
         -((f[a] - px) * dx + (f[a + 1] - py) * dy) / length,
     )
-    if beside > radius:
+    if lateral > radius:
         return 0.0
     rise = (f[b + 2] - f[a + 2]) / length
     u = _edge_contact_offset(
-        pieces, beside, abs(rise), math.sqrt(max(radius * radius - beside * beside, 0.0))
+        pieces, lateral, abs(rise), math.sqrt(max(radius * radius - lateral * lateral, 0.0))
     )
     if rise < 0.0:
         u = -u
@@ -620,16 +620,16 @@ def drop_cutter_loop(
     radius = pieces[len(pieces) - 1, RHO1]
     inner = len(start) - 2
     nodes, reaches = np.empty(DEEPEST, np.int64), np.empty(DEEPEST)
-    touched = -1
+    contact_row = -1
     for n in range(first, last):
         px, py = points[n, 0], points[n, 1]
         best, own = lowest[n], -1
-        if touched >= 0:
+        if contact_row >= 0:
             better = _triangle_drop(
-                px, py, facets[touched], lifts[touched], ALL, pieces, radius, ball, best
+                px, py, facets[contact_row], lifts[contact_row], ALL, pieces, radius, ball, best
             )
             if better > best:
-                best, own = better, touched
+                best, own = better, contact_row
         # Depth first, the more promising child first. Invariant: what may lift the tip above `best`
         # is on the stack.
         nodes[0], reaches[0] = 0, np.inf
@@ -652,7 +652,7 @@ def drop_cutter_loop(
                     waiting += 1
             if reach > best:
                 for r in range(start[node - inner], start[node - inner + 1]):
-                    if r != touched:
+                    if r != contact_row:
                         better = _triangle_drop(
                             px,
                             py,
@@ -670,4 +670,4 @@ def drop_cutter_loop(
         contact[n, 0], contact[n, 1], contact[n, 2] = np.nan, np.nan, np.nan
         if own >= 0:
             _contact_point(px, py, facets[own], pieces, radius, contact[n])
-            touched = own
+            contact_row = own

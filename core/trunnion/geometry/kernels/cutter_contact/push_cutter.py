@@ -16,7 +16,7 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import HALVINGS, RHO1, drop_cutter
 
-SAMPLES, CLOSER = 21, 12
+SAMPLES, REFINEMENTS = 21, 12
 """Positions along a line that are searched for the highest one, and how often they are drawn closer round it."""
 NOWHERE = -1e9
 """mm: how low a cutter falls that meets nothing."""
@@ -48,7 +48,7 @@ def _triangle_interval(triangle: Floats, y: float, z: float, pieces: Floats) -> 
     low, high = float(triangle[..., 0].min()) - radius, float(triangle[..., 0].max()) + radius
     a, b = low, high
     # Concave in x: the highest of the grid and its neighbours bracket the maximum.
-    for _ in range(CLOSER):
+    for _ in range(REFINEMENTS):
         x = np.linspace(a, b, SAMPLES)
         top = height(x)
         k = int(np.argmax(top))

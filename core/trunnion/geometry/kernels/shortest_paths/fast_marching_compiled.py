@@ -1,6 +1,6 @@
 """The loops of `kernels.shortest_paths.fast_marching` compiled, with an indexed binary heap.
 
-The heap holds each waiting point once and knows its place, so a lowered time moves the entry up
+The heap holds each waiting point once and knows its position, so a lowered time moves the entry up
 instead of adding another. Equal times are ordered by the point's row: the same result every time.
 """
 
@@ -121,7 +121,7 @@ def fast_march(
     """Fill in times (v,) at which fronts reach points, and the feet (v, 3) from where they came; see
     `kernels.shortest_paths.fast_marching.fast_march`."""
     n = len(time)
-    done, place, heap, size = (
+    done, heap_index, heap, size = (
         np.zeros(n, np.bool_),
         np.full(n, -1, np.int64),
         np.empty(n, np.int64),
@@ -129,17 +129,17 @@ def fast_march(
     )
     for v in range(n):
         if time[v] <= farthest:
-            place[v], heap[size] = size, v
+            heap_index[v], heap[size] = size, v
             size += 1
-            _sift_up(heap, place, time, place[v])
+            _sift_up(heap, heap_index, time, heap_index[v])
     # The least of all waiting times is final (Dijkstra's invariant); the points beyond it are
     # updated from final ones only.
     while size > 0:
         v = heap[0]
         size -= 1
         heap[0] = heap[size]
-        place[heap[0]] = 0
-        _sift_down(heap, place, time, 0, size)
+        heap_index[heap[0]] = 0
+        _sift_down(heap, heap_index, time, 0, size)
         done[v] = True
         for r in range(start[v], start[v + 1]):
             s = rows[r]
@@ -160,15 +160,15 @@ def fast_march(
                     foot[c, k] = (
                         near if share == 0.0 or share == 1.0 else near + share * (foot[b, k] - near)
                     )
-                if place[c] < 0:
-                    place[c], heap[size] = size, c
+                if heap_index[c] < 0:
+                    heap_index[c], heap[size] = size, c
                     size += 1
-                _sift_up(heap, place, time, place[c])
+                _sift_up(heap, heap_index, time, heap_index[c])
 
 
 @njit(cache=True, nogil=True)
-def _sift_up(heap: Ints, place: Ints, time: Floats, at: int) -> None:
-    """Move the entry `at` up the heap while it is before its parent; place (v,) is where each point
+def _sift_up(heap: Ints, heap_index: Ints, time: Floats, at: int) -> None:
+    """Move the entry `at` up the heap while it is before its parent; heap_index (v,) is where each point
     stands."""
     v = heap[at]
     while at > 0:
@@ -176,14 +176,14 @@ def _sift_up(heap: Ints, place: Ints, time: Floats, at: int) -> None:
         if not _before(time, v, heap[above]):
             break
         heap[at] = heap[above]
-        place[heap[at]] = at
+        heap_index[heap[at]] = at
         at = above
     heap[at] = v
-    place[v] = at
+    heap_index[v] = at
 
 
 @njit(cache=True, nogil=True)
-def _sift_down(heap: Ints, place: Ints, time: Floats, at: int, size: int) -> None:
+def _sift_down(heap: Ints, heap_index: Ints, time: Floats, at: int, size: int) -> None:
     """Move the entry `at` down the heap of `size` while a child is before it."""
     if size == 0:
         return
@@ -195,10 +195,10 @@ def _sift_down(heap: Ints, place: Ints, time: Floats, at: int, size: int) -> Non
         if not _before(time, heap[below], v):
             break
         heap[at] = heap[below]
-        place[heap[at]] = at
+        heap_index[heap[at]] = at
         at = below
     heap[at] = v
-    place[v] = at
+    heap_index[v] = at
 
 
 @njit(cache=True, nogil=True, inline="always")

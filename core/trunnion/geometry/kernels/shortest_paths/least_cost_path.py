@@ -36,10 +36,10 @@ def least_cost_path(cost: Floats, near: Ints, turn: Floats, leap: float) -> tupl
                 total[row, column] = cost[row, column]
                 continue
             least, source, jumped = total[row - 1, best] + leap, best, True
-            for way, angle in zip(near[column], turn[column], strict=True):
-                price = total[row - 1, way] + angle if way >= 0 else np.inf
+            for neighbour, angle in zip(near[column], turn[column], strict=True):
+                price = total[row - 1, neighbour] + angle if neighbour >= 0 else np.inf
                 if price < least or (jumped and price == least < np.inf):
-                    least, source, jumped = price, int(way), False
+                    least, source, jumped = price, int(neighbour), False
             total[row, column], back[row, column], leapt[row, column] = (
                 cost[row, column] + least,
                 source,
@@ -52,12 +52,12 @@ def trace_back(total: Floats, back: Ints, leapt: Bools) -> tuple[Ints, Bools]:
     """Return the path that ends cheapest in each run of rows, traced back; arguments (k, m): total
     costs, predecessors, whether by a leap."""
     k = len(total)
-    chosen, leaps = np.full(k, -1), np.zeros(k, bool)
+    columns, leaps = np.full(k, -1), np.zeros(k, bool)
     following = -1
     for row in range(k - 1, -1, -1):
         column = following if following >= 0 else int(np.argmin(total[row]))
         if not np.isfinite(total[row, column]):
             following = -1
             continue
-        chosen[row], leaps[row], following = column, leapt[row, column], back[row, column]
-    return chosen, leaps
+        columns[row], leaps[row], following = column, leapt[row, column], back[row, column]
+    return columns, leaps

@@ -40,12 +40,12 @@ def least_cost_path(cost: Floats, near: Ints, turn: Floats, leap: float) -> tupl
             # -1.
             least, source, jumped = before[best] + leap, best, True
             for q in range(near.shape[1]):
-                way = near[column, q]
-                if way < 0:
+                neighbour = near[column, q]
+                if neighbour < 0:
                     break
-                price = before[way] + turn[column, q]
+                price = before[neighbour] + turn[column, q]
                 if price < least or (jumped and price == least):
-                    least, source, jumped = price, way, False
+                    least, source, jumped = price, neighbour, False
             total[column], back[row, column], leapt[row, column] = (
                 cost[row, column] + least,
                 source,
@@ -59,12 +59,12 @@ def least_cost_path(cost: Floats, near: Ints, turn: Floats, leap: float) -> tupl
         ends[row] = last if np.isfinite(total[last]) else -1
         before, total = total, before
     # Trace back from the cheapest end of each run of rows.
-    chosen, leaps = np.full(k, -1, np.int64), np.zeros(k, np.bool_)
+    columns, leaps = np.full(k, -1, np.int64), np.zeros(k, np.bool_)
     following = -1
     for row in range(k - 1, -1, -1):
         column = following if following >= 0 else ends[row]
         if column < 0:
             following = -1
             continue
-        chosen[row], leaps[row], following = column, leapt[row, column], back[row, column]
-    return chosen, leaps
+        columns[row], leaps[row], following = column, leapt[row, column], back[row, column]
+    return columns, leaps

@@ -27,53 +27,59 @@ def choose_angles(
     high: Floats,
     slack: float,
     start: Floats,
-    chosen: Floats,
+    result: Floats,
 ) -> tuple[int, float]:
-    """Fill chosen (m, a) with rotary angles in rad; return how many poses could be followed and how
+    """Fill result (m, a) with rotary angles in rad; return how many poses could be followed and how
     far (rad) the axes turned in all.
 
     angles (m, 2, a): both solutions of each pose, rad; free (m, 2, a): that axis may stand
     anywhere; through (m,): the pole lies on the path to that pose. low, high (a,) are the limits,
     passed by at most `slack`; the first pose is reached from `start` (a,) by any turn, each other
-    by half a turn at most. Where a pose can be followed by neither solution it ends, and `chosen`
+    by half a turn at most. Where a pose can be followed by neither solution it ends, and `result`
     is left as it was.
     """
     m, _, axes = angles.shape
-    stand: list[list[list[float] | None]] = []
+    unwound: list[list[list[float] | None]] = []
     cost: list[list[float]] = []
     origin: list[list[int]] = []
     for k in range(m):
-        stand.append([None, None])
+        unwound.append([None, None])
         cost.append([math.inf, math.inf])
         origin.append([0, 0])
         # cost[k][way]: least turning to reach pose k by a solution, over both of the pose before.
-        for way in range(2):
-            for other in range(2) if k else (way,):
-                before = stand[k - 1][other] if k else [float(s) for s in start]
-                if before is None or (k and way != other and not through[k]):
+        for solution in range(2):
+            for other in range(2) if k else (solution,):
+                before = unwound[k - 1][other] if k else [float(s) for s in start]
+                if before is None or (k and solution != other and not through[k]):
                     continue
                 there = [
                     before[a]
-                    if free[k, way, a]
-                    else nearest_congruent(angles[k, way, a], before[a], low[a], high[a], slack)
+                    if free[k, solution, a]
+                    else nearest_congruent(
+                        angles[k, solution, a], before[a], low[a], high[a], slack
+                    )
                     for a in range(axes)
                 ]
                 turns = [abs(t - b) for t, b in zip(there, before, strict=True)]
                 if not all(math.isfinite(t) for t in turns) or (k and max(turns) > math.pi + slack):
                     continue
                 spent = (cost[k - 1][other] if k else 0.0) + sum(turns)
-                if spent < cost[k][way]:
-                    stand[k][way], cost[k][way], origin[k][way] = there, spent, other
-        if stand[k] == [None, None]:
+                if spent < cost[k][solution]:
+                    unwound[k][solution], cost[k][solution], origin[k][solution] = (
+                        there,
+                        spent,
+                        other,
+                    )
+        if unwound[k] == [None, None]:
             return k, math.inf
     if not m:
         return 0, 0.0
     # Trace back from the cheaper end.
-    way = int(np.argmin(cost[-1]))
-    spent = cost[-1][way]
+    solution = int(np.argmin(cost[-1]))
+    spent = cost[-1][solution]
     for k in reversed(range(m)):
-        chosen[k] = stand[k][way]
-        way = origin[k][way]
+        result[k] = unwound[k][solution]
+        solution = origin[k][solution]
     return m, spent
 
 

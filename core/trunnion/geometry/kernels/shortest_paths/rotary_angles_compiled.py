@@ -32,39 +32,42 @@ def choose_angles(
     high: Floats,
     slack: float,
     start: Floats,
-    chosen: Floats,
+    result: Floats,
 ) -> tuple[int, float]:
-    """Fill chosen (m, a) with rotary angles (rad); return how many poses could be followed and how far
+    """Fill result (m, a) with rotary angles (rad); return how many poses could be followed and how far
     (rad) the axes turned; see `kernels.shortest_paths.rotary_angles.choose_angles`."""
-    m, ways, axes = angles.shape
-    stand = np.zeros((m, ways, axes))
-    cost = np.full((m, ways), math.inf)
-    origin = np.zeros((m, ways), np.int8)
+    m, solutions, axes = angles.shape
+    unwound = np.zeros((m, solutions, axes))
+    cost = np.full((m, solutions), math.inf)
+    origin = np.zeros((m, solutions), np.int8)
     there = np.zeros(axes)
     # cost[k, way]: least turning to reach pose k by a solution; infinite: not at all. The first
     # pose has no predecessor but the start.
     for k in range(m):
-        for way in range(ways):
-            for other in range(ways):
-                if (k == 0 and other != way) or (
-                    k > 0 and (cost[k - 1, other] == math.inf or (way != other and not through[k]))
+        for solution in range(solutions):
+            for other in range(solutions):
+                if (k == 0 and other != solution) or (
+                    k > 0
+                    and (cost[k - 1, other] == math.inf or (solution != other and not through[k]))
                 ):
                     continue
                 spent = cost[k - 1, other] if k else 0.0
                 for a in range(axes):
-                    before = stand[k - 1, other, a] if k else start[a]
+                    before = unwound[k - 1, other, a] if k else start[a]
                     there[a] = (
                         before
-                        if free[k, way, a]
-                        else _nearest_congruent(angles[k, way, a], before, low[a], high[a], slack)
+                        if free[k, solution, a]
+                        else _nearest_congruent(
+                            angles[k, solution, a], before, low[a], high[a], slack
+                        )
                     )
                     turn = abs(there[a] - before)
                     # Beyond half a turn the machine would swing the tool round between two
                     # neighbouring poses.
                     spent += math.inf if k > 0 and turn > math.pi + slack else turn
-                if spent < cost[k, way]:
-                    cost[k, way], origin[k, way] = spent, other
-                    stand[k, way] = there
+                if spent < cost[k, solution]:
+                    cost[k, solution], origin[k, solution] = spent, other
+                    unwound[k, solution] = there
         if min(cost[k, 0], cost[k, 1]) == math.inf:
             return k, math.inf
     if m == 0:
@@ -73,6 +76,6 @@ def choose_angles(
     last = 0 if cost[m - 1, 0] <= cost[m - 1, 1] else 1
     spent = cost[m - 1, last]
     for k in range(m - 1, -1, -1):
-        chosen[k] = stand[k, last]
+        result[k] = unwound[k, last]
         last = origin[k, last]
     return m, spent

@@ -17,7 +17,7 @@ from trunnion.plan.tool_choice import depth_reached
 from trunnion.progress import Progress
 from trunnion.shop import Shop
 
-LEFT = 0.002
+NEGLIGIBLE = 0.002
 """Share of an area that is left to no further cutter when its own one misses it."""
 NEAR = 3
 """Names of cutters that are offered in place of one that is not there."""
@@ -25,7 +25,7 @@ NEAR = 3
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class AreaCutters:
-    """The cutter of an area and the places (k,) it reaches, what any of the catalogue reaches, and the cutter for the `missed` ones."""
+    """The cutter of an area and the samples (k,) it reaches, what any of the catalogue reaches, and the cutter for the `missed` ones."""
 
     tool: Tool | None
     reached: Bools
@@ -50,14 +50,14 @@ def named(shop: Shop, name: str) -> Tool:
 
 def cutter_for(
     space: SurfaceSpace,
-    places: AreaSamples,
+    samples: AreaSamples,
     tools: Sequence[Tool],
     share: float,
-    room: float,
+    clearance: float,
     wanted: Tool | None,
     progress: Progress,
 ) -> AreaCutters:
-    """Return the largest cutter that reaches at least a share of what any one reaches of places, the shortest of its size; or the one
+    """Return the largest cutter that reaches at least a share of what any one reaches of samples, the shortest of its size; or the one
     that is `wanted`.
 
     What it misses goes to the largest smaller one that reaches nearly all any does of that.
@@ -68,13 +68,13 @@ def cutter_for(
         if tool.name not in reach:
             reach[tool.name] = reached(
                 space,
-                places,
+                samples,
                 tool,
-                room,
+                clearance,
                 0.0,
                 progress.part(n / (len(ranked) + 1), (n + 1) / (len(ranked) + 1)),
             )
-    none = np.zeros(len(places), dtype=bool)
+    none = np.zeros(len(samples), dtype=bool)
     reachable = np.logical_or.reduce([none, *reach.values()])
     if not reachable.any():
         return AreaCutters(tool=None, reached=none, reachable=reachable, missed=none, rest=None)
@@ -84,7 +84,7 @@ def cutter_for(
         max(ranked, key=lambda t: int(reach[t.name].sum())),
     )
     missed = reachable & ~reach[tool.name]
-    if missed.sum() <= LEFT * total:
+    if missed.sum() <= NEGLIGIBLE * total:
         missed = none
     smaller = [t for t in ranked if t.diameter < tool.diameter]
     rest = (

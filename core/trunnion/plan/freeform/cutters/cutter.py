@@ -45,10 +45,10 @@ def lower_side(tool: Tool, allowance: float = 0.0) -> Floats:
         )
     elif tool.form == "barrel":
         big, centre, height = tool.barrel_radius, r - tool.barrel_radius, tool.widest_height
-        touch = c * (0.0 - centre) / (big - c)
+        contact = c * (0.0 - centre) / (big - c)
         rows = [
-            _arc(0.0, touch * (c + a) / c, 0.0, c + a, c + a),
-            _arc(touch * (c + a) / c, r + a, centre, height + a, big + a),
+            _arc(0.0, contact * (c + a) / c, 0.0, c + a, c + a),
+            _arc(contact * (c + a) / c, r + a, centre, height + a, big + a),
         ]
     else:
         rows = [_level(r - c), _arc(r - c, r + a, r - c, c + a, c + a)]
@@ -59,7 +59,7 @@ def touching(tool: Tool, angle: Floats) -> tuple[Floats, Floats]:
     """Return where on its profile a cutter touches a plane whose outward normal leans by angles (k,) rad from the cutter's axis.
 
     Distance from the axis (k,) and height above the tip (k,), mm: the contact lies on the side the normal points away from. A flat end
-    that stands on a level plane touches with its rim.
+    that is on a level plane touches with its rim.
     """
     angle = np.asarray(angle, dtype=np.float64)
     pieces = lower_side(tool)

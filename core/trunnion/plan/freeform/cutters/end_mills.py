@@ -19,7 +19,7 @@ from trunnion.plan.freeform.lands import (
     LandClearances,
     PartAbove,
     covered,
-    stands_free,
+    is_free_of_part,
     without,
 )
 from trunnion.plan.freeform.reach import AreaSamples
@@ -32,7 +32,7 @@ HALF = 0.5
 """Share of a land that an end mill must cover off its sides: else it is a slot, with sides all over."""
 WORTH = 100.0
 """mm2: a ball finishes a smaller land in the time of a tool change."""
-WORTH_LEFT = 4.0
+WORTH_REMAINING = 4.0
 """mm2: where balls leave more of a small land than this it is worth an end mill all the same."""
 MISSED = 1.0
 """mm2 that the end mill of a land may leave without another one for it."""
@@ -54,18 +54,18 @@ class LandCutters:
     land: Land
     tool: Tool
     rest: Tool | None
-    left: Region
+    remaining: Region
     flanks: tuple[tuple[Region, float], ...]
 
-    def finishes(self, places: AreaSamples) -> Bools:
-        """Say which places (k,) lie on the foot of an upright side, which the end mills finish while they cut the land beside it."""
-        found = np.zeros(len(places), dtype=bool)
-        upright = np.abs(places.normal[:, 2]) < VERTICAL
+    def finishes(self, samples: AreaSamples) -> Bools:
+        """Return which samples (k,) lie on the foot of an upright side, which the end mills finish while they cut the land beside it."""
+        found = np.zeros(len(samples), dtype=bool)
+        upright = np.abs(samples.normal[:, 2]) < VERTICAL
         for region, height in self.flanks:
-            above = places.point[:, 2] - self.land.z
+            above = samples.point[:, 2] - self.land.z
             rows = np.flatnonzero(upright & (above > -tolerance.SLIVER) & (above <= height))
             found[rows] |= region.contains(
-                places.point[rows, :2] + BEFORE * places.normal[rows, :2]
+                samples.point[rows, :2] + BEFORE * samples.normal[rows, :2]
             )
         return found
 
@@ -80,19 +80,19 @@ class _Reach:
 
     @staticmethod
     def of(
-        standing: PartAbove,
+        part_above: PartAbove,
         land: Land,
         tools: Sequence[Tool],
-        keeping: LandClearances,
+        clearances: LandClearances,
         progress: Progress,
     ) -> _Reach:
         """Return what tools cover of a land."""
         before, after = (
             {
-                t.name: covered(land, standing.free(land.z, t, keeps), t)
+                t.name: covered(land, part_above.free(land.z, t, kept), t)
                 for t in progress.each(tools)
             }
-            for keeps in (keeping, replace(keeping, beside=0.0))
+            for kept in (clearances, replace(clearances, lateral=0.0))
         )
         return _Reach(land=land, before=before, after=after)
 
@@ -102,12 +102,12 @@ class _Reach:
 
 
 def end_mills_for(
-    standing: PartAbove,
+    part_above: PartAbove,
     lands: Sequence[Land],
     tools: Sequence[Tool],
     ball: float,
     share: float,
-    keeping: LandClearances,
+    clearances: LandClearances,
     kept: Sequence[Tool],
     progress: Progress,
 ) -> tuple[LandCutters, ...]:
@@ -122,31 +122,35 @@ def end_mills_for(
     reach: dict[str, _Reach] = {}
     for n, land in enumerate(lands):
         progress.at(n / max(len(lands), 1), f"end mill for the land at {land.z:.2f}")
-        if ranked and _may_cover(standing, land, ranked):
-            reach[str(n)] = _Reach.of(standing, land, ranked, keeping, progress)
+        if ranked and _may_cover(part_above, land, ranked):
+            reach[str(n)] = _Reach.of(part_above, land, ranked, clearances, progress)
     progress.at(1.0, "end mills for all lands")
-    fits = {key: _for_land(standing, each, ranked, share, progress) for key, each in reach.items()}
+    fits = {
+        key: _for_land(part_above, each, ranked, share, progress) for key, each in reach.items()
+    }
     worth = {
-        key for key, each in progress.each(reach.items()) if _is_worth(standing, each.land, ball)
+        key for key, each in progress.each(reach.items()) if _is_worth(part_above, each.land, ball)
     }
     first = covered_by_few({key: found for key, found in fits.items() if key in worth}, kept)
     rest = covered_by_few(
         {
-            key: _for_rest(standing, reach[key], tool, ranked, share, progress)
+            key: _for_rest(part_above, reach[key], tool, ranked, share, progress)
             for key, tool in first.items()
         },
         tuple(first.values()),
     )
-    found = [_chosen(reach[key], tool, rest.get(key)) for key, tool in progress.each(first.items())]
+    found = [
+        _cutters_of(reach[key], tool, rest.get(key)) for key, tool in progress.each(first.items())
+    ]
     in_use = {t.name for t in first.values()}
     for key in reach.keys() - worth if in_use else ():
         tool = next((t for t in fits[key] if t.name in in_use), None)
         if tool is not None and reach[key].missed(tool).area <= MISSED:
-            found.append(_chosen(reach[key], tool, None))
+            found.append(_cutters_of(reach[key], tool, None))
     return tuple(sorted(found, key=lambda c: (-c.land.z, c.land.tags)))
 
 
-def _chosen(reach: _Reach, tool: Tool, rest: Tool | None) -> LandCutters:
+def _cutters_of(reach: _Reach, tool: Tool, rest: Tool | None) -> LandCutters:
     missed, done = reach.missed(tool), reach.after[rest.name] if rest else EMPTY_REGION
     flanks = [(tool, reach.before[tool.name], SIDE)] + (
         [(rest, done, FOOT * rest.diameter)] if rest else []
@@ -155,16 +159,17 @@ def _chosen(reach: _Reach, tool: Tool, rest: Tool | None) -> LandCutters:
         land=reach.land,
         tool=tool,
         rest=rest,
-        left=without(missed, done),
+        remaining=without(missed, done),
         flanks=tuple((region, height) for mill, region, height in flanks if mill.form == "flat"),
     )
 
 
-def _may_cover(standing: PartAbove, land: Land, tools: Sequence[Tool]) -> bool:
-    """Say whether the slimmest end mill would cover enough of a land with nothing above its flutes: others cover no more."""
+def _may_cover(part_above: PartAbove, land: Land, tools: Sequence[Tool]) -> bool:
+    """Return whether the slimmest end mill would cover enough of a land with nothing above its flutes: others cover no more."""
     slimmest = min(tools, key=lambda t: (t.diameter, t.corner_radius))
     return _is_most(
-        covered(land, standing.space.around().minus(standing.over(land.z + SKIM)), slimmest), land
+        covered(land, part_above.space.around().minus(part_above.over(land.z + SKIM)), slimmest),
+        land,
     )
 
 
@@ -173,7 +178,7 @@ def _is_most(region: Region, land: Land) -> bool:
 
 
 def _for_land(
-    standing: PartAbove, reach: _Reach, tools: Sequence[Tool], share: float, progress: Progress
+    part_above: PartAbove, reach: _Reach, tools: Sequence[Tool], share: float, progress: Progress
 ) -> list[Tool]:
     """Return the end mills, largest first, that cover off its sides nearly all of a land that any does; none where that is too little."""
     most = max(r.area for r in reach.before.values())
@@ -186,13 +191,13 @@ def _for_land(
             t
             for t in tools
             if reach.before[t.name].area >= share * most
-            and stands_free(standing, reach.land, t, progress)
+            and is_free_of_part(part_above, reach.land, t, progress)
         ]
     )
 
 
 def _for_rest(
-    standing: PartAbove,
+    part_above: PartAbove,
     reach: _Reach,
     tool: Tool,
     tools: Sequence[Tool],
@@ -212,7 +217,7 @@ def _for_rest(
             t
             for t in tools
             if area.get(t.name, 0.0) >= share * most
-            and stands_free(standing, reach.land, t, progress)
+            and is_free_of_part(part_above, reach.land, t, progress)
         ]
         if most > MISSED
         else []
@@ -223,9 +228,9 @@ def _near(tools: list[Tool]) -> list[Tool]:
     return [t for t in tools if t.diameter >= NEAR * tools[0].diameter]
 
 
-def _is_worth(standing: PartAbove, land: Land, ball: float) -> bool:
-    """Say whether a land is large enough for an end mill, or a ball would leave too much of it beside what stands there."""
+def _is_worth(part_above: PartAbove, land: Land, ball: float) -> bool:
+    """Return whether a land is large enough for an end mill, or a ball would leave too much of it beside what is there."""
     if land.region.area >= WORTH:
         return True
-    room = standing.space.around().minus(standing.over(land.z + ball)).offset(-ball)
-    return without(land.region, room.intersect(land.region)).area > WORTH_LEFT
+    axis_region = part_above.space.around().minus(part_above.over(land.z + ball)).offset(-ball)
+    return without(land.region, axis_region.intersect(land.region)).area > WORTH_REMAINING

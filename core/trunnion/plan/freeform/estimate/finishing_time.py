@@ -1,6 +1,6 @@
 """How long the finishing of areas takes, by area over area rate, and what cutters of their own gain: the paper's arithmetic on this plan.
 
-Before toolpaths are made a cutter's area rate is its feed times the distance of its passes on a plane; the way between passes, leads and
+Before toolpaths are made a cutter's area rate is its feed times the distance of its passes on a plane; the moves between passes, leads and
 the machine's acceleration are not in it.
 """
 
@@ -47,7 +47,7 @@ class Estimate:
 def estimate_of(process: ProcessTree, area: Floats) -> Estimate | None:
     """Return the estimate for a plan, by the area (n,) mm2 of face row = tag - 1; None where no area of curved faces is finished.
 
-    A face that several operations finish, one its steep places and one the others, counts in equal parts, so that none counts twice.
+    A face that several operations finish, one its steep positions and one the others, counts in equal parts, so that none counts twice.
     """
     finishing = [o for o in process.operations if o.kind == FINISH and not o.suppressed and o.faces]
     if not finishing:

@@ -14,7 +14,7 @@ HEIGHT_PER_RA = 2.5
 
 
 def height_of(ra: float) -> float:
-    """Return the scallop height in mm that is asked for a wanted Ra in um."""
+    """Return the scallop height in mm that a wanted Ra requires in um."""
     return HEIGHT_PER_RA * ra / 1000.0
 
 

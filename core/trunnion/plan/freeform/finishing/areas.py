@@ -15,14 +15,14 @@ from trunnion.part.part import Part
 from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import exclusive_kinds
 
 TIGHT = 8.0
 """mm: a hollow with a smaller radius bears only cutters smaller than those for what lies around it."""
 LOCAL, REMAINING = "local", "remaining"
 END_MILL = 3.0
-"""mm: radius of a cutter that must have room down to the foot of an upright wall for it to stand free."""
+"""mm: radius of a cutter that must have space down to the foot of an upright wall for it to stand free."""
 VERTICAL = np.sin(np.radians(0.5))
 """Cosine of the angle from the tool's axis from which on a normal counts as level: the wall is upright then."""
 
@@ -39,12 +39,12 @@ class Area:
 
 
 def areas_of(
-    recognition: Recognition, graph: FaceGraph, left_out: Collection[int] = ()
+    recognition: Recognition, graph: FaceGraph, omitted: Collection[int] = ()
 ) -> tuple[Area, ...]:
     """Return each connected set of local faces as an area of its own, by its largest face's tag, and the remaining faces as one."""
     groups = recognition.of_kind(*exclusive_kinds(recognition.family))
-    local = {tag for f in groups if f.attributes.get("local") for tag in f.tags} - set(left_out)
-    remaining = sorted({tag for f in groups for tag in f.tags} - local - set(left_out))
+    local = {tag for f in groups if f.attributes.get("local") for tag in f.tags} - set(omitted)
+    remaining = sorted({tag for f in groups for tag in f.tags} - local - set(omitted))
     sets = connected(local, graph)
     found = [Area(id=f"{LOCAL}-{n:02}", tags=tags, local=True) for n, tags in enumerate(sets, 1)]
     return (
@@ -77,13 +77,13 @@ def _radius(feature: Feature) -> float:
 
 def connected(tags: Collection[int], graph: FaceGraph) -> list[tuple[int, ...]]:
     """Return faces in sets that hang together by edges, each in ascending order, the sets by their first tag."""
-    left, found = set(tags), []
-    while left:
-        mine, border = set(), [min(left)]
+    remaining, found = set(tags), []
+    while remaining:
+        mine, border = set(), [min(remaining)]
         while border:
             tag = border.pop()
-            if tag in left:
-                left.discard(tag)
+            if tag in remaining:
+                remaining.discard(tag)
                 mine.add(tag)
                 border += [graph.across(e, tag - 1) + 1 for e in graph.edges_of[tag - 1]]
         found.append(tuple(sorted(mine)))
@@ -106,22 +106,25 @@ def blank_faces(part: Part, blank: Blank) -> tuple[int, ...]:
     return tuple(tag for tag in part.tags if lies[tag - 1])
 
 
-def walls_of(places: AreaSamples, tags: Collection[int]) -> tuple[int, ...]:
+def walls_of(samples: AreaSamples, tags: Collection[int]) -> tuple[int, ...]:
     """Return the faces that stand upright all over."""
     return tuple(
         sorted(
             t
             for t in tags
-            if (own := places.face == t).any()
-            and bool((np.abs(places.normal[own, 2]) < VERTICAL).all())
+            if (own := samples.face == t).any()
+            and bool((np.abs(samples.normal[own, 2]) < VERTICAL).all())
         )
     )
 
 
 def on_outline(
-    space: SurfaceSpace, places: AreaSamples, tags: Collection[int], progress: Progress = QUIET
+    space: SurfaceSpace,
+    samples: AreaSamples,
+    tags: Collection[int],
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[int, ...]:
-    """Return the upright faces that nothing of the part stands in front of at their height: an end mill beside them is out in the free.
+    """Return the upright faces that nothing of the part is in front of at their height: an end mill beside them is out in the free.
 
     A face that runs into another one at its foot, or meets one that comes out of it, doesn't stand free.
     """
@@ -130,10 +133,10 @@ def on_outline(
         edges = [e for e in graph.edges_of[tag - 1] if graph.across(e, tag - 1) + 1 not in tags]
         if any(graph.convexity[e] != CONVEX for e in edges):
             continue
-        own = places.of(places.face == tag)
-        beside = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
+        own = samples.of(samples.face == tag)
+        shifted = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
         over = space.skin.drop.drop(
-            beside, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0)
+            shifted, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0)
         )
         if (over < own.point[:, 2].min() + tolerance.SEW).all():
             found.append(tag)

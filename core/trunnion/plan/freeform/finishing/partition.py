@@ -12,17 +12,17 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.sheet import Sheet, edges_of, sheet_of, split_finely
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 FILLED = 1.0
-"""Of the width around places: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is
+"""Of the width around positions: what is narrower than twice this between two parts of the area belongs to it, and no bay of its rim is
 rounder."""
 FINENESS = 0.5
 """Of that width: the longest edge of the triangles that the rim is drawn through."""
 NEAR_END = 0.05
 """Share of an edge: how near its ends the rim crosses it at most."""
 BETWEEN = 0.25
-"""Of a triangle's longest side: how far a place of its sides is from the nearest that is asked."""
+"""Of a triangle's longest side: how far a position of its sides is from the nearest that is queried."""
 PART = 1_000_000
 """Added to a face's tag for a part of it: more than any part has faces."""
 
@@ -33,19 +33,19 @@ def parted_near(
     over: Callable[[Floats, Floats], Floats],
     around: float,
     longest: float = 0.0,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what of faces lies within `around` mm of certain places given tags of its own, and those tags.
 
-    `over` says for places (p, 3) with outward unit normals (p, 3) how much (p,) there is of what it is about: places above nothing count.
-    With `longest` mm the faces as a whole get triangles with such edges: what is not near hangs together as it did. Without it only what
-    is near gets finer ones, and triangles beside it no longer share all their corners with it.
+    `over` says for positions (p, 3) with outward unit normals (p, 3) how much (p,) there is of what it is about: positions above nothing
+    count. With `longest` mm the faces as a whole get triangles with such edges: what is not near hangs together as it did. Without it only
+    what is near gets finer ones, and triangles beside it no longer share all their corners with it.
     """
     rows = np.flatnonzero(skin.of(tags))
-    place, normal, of = progress.aside(lambda _: _places(skin, rows), "Parting the faces")
-    certain = over(place, normal) > 0.0
+    position, normal, of = progress.aside(lambda _: _positions(skin, rows), "Parting the faces")
+    certain = over(position, normal) > 0.0
     near = rows[
-        progress.aside(lambda _: _with_those_near(place, of, certain, (1.0 + FILLED) * around))
+        progress.aside(lambda _: _with_those_near(position, of, certain, (1.0 + FILLED) * around))
     ]
     if not len(near):
         return skin, ()
@@ -109,7 +109,8 @@ def _distance(sheet: Sheet, value: Floats) -> Floats:
 
 
 def _crossing(value: Floats, ends: Ints) -> Floats:
-    """Return the share of the way along edges (k, 2) where values (v,) of different signs are nothing; the middle where one is infinite."""
+    """Return the share of the distance along edges (k, 2) where values (v,) of different signs are nothing; the middle where one is
+    infinite."""
     a, b = value[ends].T
     even = np.isfinite(a) & np.isfinite(b)
     return np.where(even, np.divide(a, a - b, out=np.full(len(a), 0.5), where=even & (a != b)), 0.5)
@@ -133,9 +134,9 @@ def _length(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
     return np.asarray(np.linalg.norm(b - a, axis=1))
 
 
-def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
-    """Return places (p, 3) on triangles, the faces' unit normals there, and which of them (k, 7) are the corners, the middles of the sides
-    and the middle of each triangle: what a cutter leaves beside a rim may be narrower than a triangle."""
+def _positions(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
+    """Return positions (p, 3) on triangles, the faces' unit normals there, and which of them (k, 7) are the corners, the middles of the
+    sides and the middle of each triangle: what a cutter leaves beside a rim may be narrower than a triangle."""
     used, corners = np.unique(skin.triangles[rows], return_inverse=True)
     corners = corners.reshape(-1, 3)
     ends, side = edges_of(corners, len(used))
@@ -143,16 +144,17 @@ def _places(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
         (x, x[ends].mean(axis=1), x[corners].mean(axis=1))
         for x in (skin.points[used], skin.normals[used])
     ]
-    place, normal = (np.concatenate(part) for part in parts)
+    position, normal = (np.concatenate(part) for part in parts)
     of = np.column_stack([corners, len(used) + side, len(used) + len(ends) + np.arange(len(rows))])
-    return place, normal / np.linalg.norm(normal, axis=1, keepdims=True), of
+    return position, normal / np.linalg.norm(normal, axis=1, keepdims=True), of
 
 
-def _with_those_near(place: Floats, of: Ints, certain: Bools, around: float) -> Bools:
-    """Say which triangles, with places (k, 7) of all (p, 3), come as near as that to a certain place (p,): wide ones may between theirs."""
+def _with_those_near(position: Floats, of: Ints, certain: Bools, around: float) -> Bools:
+    """Return which triangles, with positions (k, 7) of all (p, 3), come as near as that to a certain position (p,): wide ones may between
+    theirs."""
     if not certain.any():
         return np.zeros(len(of), dtype=bool)
-    away = np.asarray(cKDTree(place[certain]).query(place)[0])
-    corners = place[of[:, :3]]
+    away = np.asarray(cKDTree(position[certain]).query(position)[0])
+    corners = position[of[:, :3]]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     return np.asarray(away[of].min(axis=1) <= around + BETWEEN * longest)

@@ -14,39 +14,39 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.partition import parted_near
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 LIFTED = 0.5 * tolerance.GOUGE
-"""mm: a cutter that other faces lift by no more than this still reaches a place."""
+"""mm: a cutter that other faces lift by no more than this still reaches a position."""
 UNSEEN = 0.1
-"""Of the scallop height: a cutter that is lifted by no more than this finishes a place."""
+"""Of the scallop height: a cutter that is lifted by no more than this finishes a position."""
 AROUND = 0.3
 """mm at least that an area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
 MET, MOST = 1.5, 20_000
-"""mm: the longest edge of triangles that are asked whether shank or holder meet something; and how many such squares there are at most."""
-ASKED, DOUBT = 1.0, 1.5
-"""mm: one place of each cube of this width, and of each side that faces turn there, is asked first; and by how much wider and lower shank
-and holder are taken then, for its neighbours' sake."""
-BESIDE = 0.2
-"""mm that shank and holder keep from walls beside them."""
+"""mm: the longest edge of triangles that are tested for shank or holder meeting something; and how many such squares there are at most."""
+QUERY_SPACING, DOUBT = 1.0, 1.5
+"""mm: one position of each cube of this width, and of each side that faces turn there, is queried first; and by how much wider and lower
+shank and holder are taken then, for its neighbours' sake."""
+HOLDER_CLEARANCE = 0.2
+"""mm that shank and holder keep from adjacent walls."""
 
 
-def left_by(
+def remaining_of(
     skin: Skin,
     tags: tuple[int, ...],
     earlier: Tool,
     lowest: float,
     height: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
     in mm that is wanted."""
     limit = min(UNSEEN * height, LIFTED)
 
-    def over(place: Floats, normal: Floats) -> Floats:
-        lift = np.full(len(place), np.inf)
+    def over(position: Floats, normal: Floats) -> Floats:
+        lift = np.full(len(position), np.inf)
         up = normal[:, 2] > 0.0
-        tip, top = _stood(skin, place[up], normal[up], earlier, lowest, progress)
+        tip, top = _drop(skin, position[up], normal[up], earlier, lowest, progress)
         lift[up] = top - tip[:, 2] - limit
         return lift
 
@@ -65,10 +65,10 @@ def without_met(
     tool: Tool,
     lowest: float,
     height: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin and the tags of what of faces an upright tool finishes without its shank or holder meeting the part: all of them
-    where these meet nothing, else not what lies around such places, twice as far as passes are apart at a scallop height in mm."""
+    where these meet nothing, else not what lies around such positions, twice as far as passes are apart at a scallop height in mm."""
     wider = [
         (z0, max(r0, r1))
         for z0, r0, _, r1 in tool.profile()
@@ -76,19 +76,19 @@ def without_met(
     ]
     highest = float(skin.points[:, 2].max())
 
-    def over(place: Floats, normal: Floats, more: float = 0.0) -> Floats:
-        met = np.full(len(place), -np.inf)
+    def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
+        met = np.full(len(position), -np.inf)
         up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        tip, top = _stood(skin, place[up], normal[up], tool, lowest, progress)
-        stands = np.maximum(top, tip[:, 2])
+        tip, top = _drop(skin, position[up], normal[up], tool, lowest, progress)
+        material_top = np.maximum(top, tip[:, 2])
         deepest = np.full(len(tip), -np.inf)
         for z, radius in wider:
-            low = np.flatnonzero(stands + z - more < highest)
+            low = np.flatnonzero(material_top + z - more < highest)
             if len(low):
-                beside = skin.drop.drop(
-                    tip[low, :2], level_disc(radius + BESIDE + more), lowest, progress
+                wall_top = skin.drop.drop(
+                    tip[low, :2], level_disc(radius + HOLDER_CLEARANCE + more), lowest, progress
                 )
-                deepest[low] = np.maximum(deepest[low], beside - stands[low] - z + more)
+                deepest[low] = np.maximum(deepest[low], wall_top - material_top[low] - z + more)
         met[up] = deepest
         return met
 
@@ -96,7 +96,9 @@ def without_met(
     middle, normal = skin.points[rows].mean(axis=1), skin.normals[rows].mean(axis=1)
     normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     some = np.unique(
-        np.column_stack([np.floor(middle / ASKED), np.round(normal)]), axis=0, return_index=True
+        np.column_stack([np.floor(middle / QUERY_SPACING), np.round(normal)]),
+        axis=0,
+        return_index=True,
     )[1]
     if not (over(middle[some], normal[some], DOUBT) > 0.0).any():
         return skin, tags
@@ -115,11 +117,11 @@ def without_met(
     return (met_skin, tuple(t for t in tags if met_skin.of((t,)).any())) if met else (skin, tags)
 
 
-def _stood(
-    skin: Skin, place: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress
+def _drop(
+    skin: Skin, position: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress
 ) -> tuple[Floats, Floats]:
-    """Return the tips (p, 3) of an upright cutter that touches at places (p, 3) with normals (p, 3), and the heights (p,) that the part
+    """Return the tips (p, 3) of an upright cutter that touches at positions (p, 3) with normals (p, 3), and the heights (p,) that the part
     lifts it to there."""
-    at = place + 2.0 * skin.bound * normal
+    at = position + 2.0 * skin.bound * normal
     tip = tip_at(tool, at, normal, np.tile([0.0, 0.0, 1.0], (len(at), 1)))
     return tip, skin.drop.drop(tip[:, :2], lower_side(tool), lowest, progress)

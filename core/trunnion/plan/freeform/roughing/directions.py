@@ -24,7 +24,7 @@ ROUND = 8
 WORTH = 0.1
 """Share of what is hidden that another direction must see to be worth its turn."""
 FACING = math.sin(math.radians(10.0))
-"""Cosine of the angle from a direction from which on a place looks along it rather than at it: such a one says not how deep to go."""
+"""Cosine of the angle from a direction from which on a position looks along it rather than at it: such a one says not how deep to go."""
 OFF = 0.3
 """mm: how far from the faces it is looked whether a cutter comes there."""
 PROBE = 6.0
@@ -45,10 +45,10 @@ def sides_for(
     around: ClearanceScene,
     hidden: AreaSamples,
     tools: Sequence[Tool],
-    room: float,
+    clearance: float,
     progress: Progress,
 ) -> list[RoughingDirection]:
-    """Return the directions that see hidden places best, each the one that sees most of what those before it don't."""
+    """Return the directions that see hidden positions best, each the one that sees most of what those before it don't."""
     probe = max(
         (t for t in tools if t.diameter <= PROBE),
         key=lambda t: (t.diameter, t.reach, t.name),
@@ -62,28 +62,28 @@ def sides_for(
         progress.at(n / len(directions), "looking from the sides")
         there = space.seen_from(setup, direction)
         # Roughing stays off the faces: what the cutter only grazes along its side is seen as well.
-        beside = hidden.point + OFF * hidden.normal
+        shifted = hidden.point + OFF * hidden.normal
         local = AreaSamples(
-            point=there.frame.to_local(space.frame.to_world(beside)),
+            point=there.frame.to_local(space.frame.to_world(shifted)),
             face=hidden.face,
             area=hidden.area,
             normal=there.frame.local_direction(space.frame.world_direction(hidden.normal)),
         )
-        seen.append(reached(there, local, probe, room))
+        seen.append(reached(there, local, probe, clearance))
         spaces.append(there)
         heights.append(local.point[:, 2])
         facing.append(local.normal[:, 2] > FACING)
-    found, left = [], np.ones(len(hidden), dtype=bool)
+    found, remaining = [], np.ones(len(hidden), dtype=bool)
     for tilt in range(len(TILTS)):
-        # Level directions first: they leave most room for the spindle, and what they see lies in even layers.
+        # Level directions first: they leave most space for the spindle, and what they see lies in even layers.
         rows = [
             k
             for k, d in enumerate(directions)
             if abs(d[2] - math.cos(TILTS[tilt])) < tolerance.ANGLE
         ]
-        while rows and left.any():
-            best = max(rows, key=lambda k: (int((seen[k] & left).sum()), -k))
-            gained = seen[best] & left
+        while rows and remaining.any():
+            best = max(rows, key=lambda k: (int((seen[k] & remaining).sum()), -k))
+            gained = seen[best] & remaining
             if gained.sum() <= WORTH * len(hidden):
                 break
             faces = gained & facing[best]
@@ -93,7 +93,7 @@ def sides_for(
                     bottom=float(heights[best][faces if faces.any() else gained].min()),
                 )
             )
-            left &= ~gained
+            remaining &= ~gained
     return found
 
 

@@ -1,6 +1,6 @@
-"""How high a part stands, seen along the tool: a map that is nowhere lower than the part with its allowance, and areas where it is low.
+"""How high a part is, seen along the tool: a map that is nowhere lower than the part with its allowance, and areas where it is low.
 
-Each place of a square grid knows the height of the part, thickened all round by an allowance, over a disc as wide as a cell's diagonal.
+Each position of a square grid knows the height of the part, thickened all round by an allowance, over a disc as wide as a cell's diagonal.
 So every corner of a cell is at least as high as the part anywhere in the cell, and where a cell is split by a height, one corner that lies
 below it is enough to know that the cell does.
 """
@@ -18,17 +18,17 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.geometry.surface.drop_surface import DropSurface
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
-MOST_PLACES = 60_000
-"""Places of a map: about a second of dropping; beyond, cells grow."""
+MOST_SAMPLES = 60_000
+"""Positions of a map: about a second of dropping; beyond, cells grow."""
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 """Corners of a cell, anticlockwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class HeightMap:
-    """Heights (nx, ny) mm at the places `corner` + (i, j) `cell`."""
+    """Heights (nx, ny) mm at the positions `corner` + (i, j) `cell`."""
 
     height: Floats
     corner: Floats
@@ -41,16 +41,16 @@ class HeightMap:
         high: Floats,
         cell: float,
         allowance: float,
-        progress: Progress = QUIET,
+        progress: Progress = NO_PROGRESS,
     ) -> HeightMap:
-        """Return the map of a surface over a box with corners (3,), which should hold it with room to spare; nothing is below `low`."""
+        """Return the map of a surface over a box with corners (3,), which should hold it with space to spare; nothing is below `low`."""
         size = high[:2] - low[:2]
         cell = cell_over(low, high, cell)
         count = np.ceil(size / cell).astype(int) + 1
         corner = 0.5 * (low[:2] + high[:2]) - 0.5 * cell * (count - 1)
-        places = corner + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
+        positions = corner + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
         top = drop.drop(
-            places, _disc(math.sqrt(2.0) * cell, allowance), float(low[2]) - allowance, progress
+            positions, _disc(math.sqrt(2.0) * cell, allowance), float(low[2]) - allowance, progress
         )
         return HeightMap(height=top.reshape(tuple(count)) + allowance, corner=corner, cell=cell)
 
@@ -62,13 +62,13 @@ class HeightMap:
 def cell_over(low: Floats, high: Floats, cell: float) -> float:
     """Return the side in mm of the cells of a map over a box with corners (3,): `cell`, or what keeps the map small enough."""
     size = high[:2] - low[:2]
-    return max(cell, math.sqrt(float(size[0] * size[1]) / MOST_PLACES))
+    return max(cell, math.sqrt(float(size[0] * size[1]) / MOST_SAMPLES))
 
 
-def gap_beside_walls(cell: float, chord: float) -> float:
+def wall_gap(cell: float, chord: float) -> float:
     """Return by how much, in mm and in the mean, the rims of `HeightMap.below` stay farther from upright walls than the map's allowance.
 
-    A place is low from a cell's diagonal off the wall on. The rim crosses the edge to a place that isn't, on either side of that
+    A position is low from a cell's diagonal off the wall on. The rim crosses the edge to a position that isn't, on either side of that
     distance by less than a cell, and straightening moves it off by the chord error. So no rim is farther off than twice this.
     """
     return math.sqrt(2.0) * cell + chord
@@ -122,22 +122,23 @@ def _runs(whole: Bools, corner: Floats, cell: float) -> list[shapely.Geometry]:
 def _slices(
     height: Floats, mixed: Bools, corner: Floats, cell: float, z: float
 ) -> list[shapely.Geometry]:
-    """Return what lies low of cells that are split: the corners below, and on the edges between the places where they cross the height."""
+    """Return what lies low of cells that are split: the corners below, and on the edges between the positions where they cross the
+    height."""
     i, j = np.nonzero(mixed)
     if not len(i):
         return []
     at = np.stack([np.column_stack([i + a, j + b]) for a, b in CORNERS], axis=1)
     value = height[at[:, :, 0], at[:, :, 1]] - z
-    place, after, next_value = (
+    position, after, next_value = (
         at.astype(np.float64),
         np.roll(at, -1, axis=1),
         np.roll(value, -1, axis=1),
     )
     crossed = (value <= 0.0) != (next_value <= 0.0)
     share = np.divide(value, value - next_value, out=np.zeros_like(value), where=crossed)
-    crossing = place + share[:, :, None] * (after - place)
+    crossing = position + share[:, :, None] * (after - position)
     # Corner, crossing, corner, ... : what isn't there takes the place of what was before it, which adds no area.
-    ring = np.stack([place, crossing], axis=2).reshape(len(i), 8, 2)
+    ring = np.stack([position, crossing], axis=2).reshape(len(i), 8, 2)
     there = np.stack([value <= 0.0, crossed], axis=2).reshape(len(i), 8)
     twice = np.concatenate([there, there], axis=1)
     rows = np.maximum.accumulate(np.where(twice, np.arange(16), -1), axis=1)[:, 8:] % 8

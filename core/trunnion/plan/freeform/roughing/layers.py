@@ -1,4 +1,4 @@
-"""Plane drives of parts of curved surfaces: layers from how high the part stands, and outlines of upright walls from its sections."""
+"""Plane drives of parts of curved surfaces: layers from how high the part is, and outlines of upright walls from its sections."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
 from trunnion.plan.freeform.roughing.heights import (
     HeightMap,
     cell_over,
-    gap_beside_walls,
     region_below,
+    wall_gap,
 )
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
@@ -32,7 +32,7 @@ LEAST_STRAIGHT = 0.02
 LEVEL_AREA = 4.0
 """mm2: level faces together at a height at least this large end a layer on them."""
 WORTH = 0.2
-"""Of a layer: stock that stands no higher over it isn't worth a pass in it."""
+"""Of a layer: stock that is no higher over it isn't worth a pass in it."""
 RIM = 2.0
 """Cells of the stock that walls keep high though everything beside them is cut."""
 
@@ -63,14 +63,12 @@ def plane_drive_of(
     )
 
 
-def left_on_walls(space: SurfaceSpace, allowance: float, cell: float) -> float:
+def remaining_on_walls(space: SurfaceSpace, allowance: float, cell: float) -> float:
     """Return how thick, in mm and in the mean, layers with an allowance from a map with these cells (mm) leave material on upright walls.
 
     Nowhere is it twice as thick.
     """
-    return allowance + gap_beside_walls(
-        cell_over(*_mapped_box(space, cell), cell), _chord(allowance)
-    )
+    return allowance + wall_gap(cell_over(*_mapped_box(space, cell), cell), _chord(allowance))
 
 
 def _chord(allowance: float) -> float:
@@ -87,9 +85,9 @@ def _mapped_box(space: SurfaceSpace, cell: float) -> tuple[Floats, Floats]:
 def _layers(
     operation: Operation, space: SurfaceSpace, stock: StockHeights, progress: Progress
 ) -> PlaneDrive:
-    """Return layers down to the operation's bottom: what stands over each that the part, its allowance all round, doesn't need.
+    """Return layers down to the operation's bottom: what is over each that the part, its allowance all round, doesn't need.
 
-    A layer that nothing stands over wants nothing.
+    A layer that nothing is over wants nothing.
     """
     allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
     cell = number(operation, CELL)
@@ -110,7 +108,7 @@ def _layers(
         # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
         wanted = (
             free.intersect(blank)
-            .intersect(_standing(stock, z, above))
+            .intersect(_stock_over(stock, z, above))
             .opened(0.5 * RIM * stock.cell)
         )
         levels.append(
@@ -164,8 +162,8 @@ def level_faces(space: SurfaceSpace) -> list[float]:
     return found
 
 
-def _standing(stock: StockHeights, z: float, above: float) -> Region:
-    """Return where the stock stands over a layer by more than is worth nothing; rims beside walls, which are never certain, left out."""
+def _stock_over(stock: StockHeights, z: float, above: float) -> Region:
+    """Return where the stock is over a layer by more than is worth nothing; rims beside walls, which are never certain, left out."""
     most = float(stock.heights.max())
     higher = stock.heights > z + WORTH * (above - z)
     if higher.all():
@@ -173,7 +171,7 @@ def _standing(stock: StockHeights, z: float, above: float) -> Region:
         return Region.rectangle(*low, *high)
     if not higher.any():
         return EMPTY_REGION
-    # Each cell of the stock as a place of a grid: low where it stands high.
+    # Each cell of the stock as a position of a grid: low where it stands high.
     grid = np.pad(np.where(higher, most - 1.0, most + 1.0), 1, constant_values=most + 1.0)
     found = region_below(grid, stock.corner - 0.5 * stock.cell, stock.cell, most, LEAST_STRAIGHT)
     return found.opened(RIM * stock.cell)
@@ -183,14 +181,14 @@ def _outline(operation: Operation, space: SurfaceSpace) -> PlaneDrive:
     """Return the outline that the part's sections make from a bottom up, as walls from there to the highest of the operation's faces."""
     rows = np.isin(space.skin.face, operation.faces)
     z = space.skin.points[space.skin.triangles[rows], 2]
-    bottom, top, beside = float(z.min()), float(z.max()), tolerance.BESIDE_PLANE
+    bottom, top, margin = float(z.min()), float(z.max()), tolerance.OFF_PLANE
     highest = float(space.skin.points[:, 2].max())
     heights = [
-        bottom + beside,
+        bottom + margin,
         0.5 * (bottom + top),
-        top - beside,
+        top - margin,
         *np.linspace(top, highest, 4)[1:-1],
-        highest - beside,
+        highest - margin,
     ]
     sections = [
         space.part.section(space.frame, h).holes_filled() for h in heights if bottom < h < highest

@@ -60,7 +60,7 @@ def hole_of(
         raise BadInput(f"line {line}: {code}: {reason}") from None
 
 
-def ways_over(mode: ModalCycle, start: Point, top: Point, cycle: Cycle) -> list[Point]:
+def path_over(mode: ModalCycle, start: Point, top: Point, cycle: Cycle) -> list[Point]:
     """Return the ends of the rapids that bring a tool over a hole, mm; those that go nowhere are left out.
 
     As LinuxCNC 2.9 does: where the series began below the retract plane, first straight to that plane, up or down; then to the hole at the

@@ -40,17 +40,19 @@ class Control:
         words: IsoWords,
         tools: Mapping[int, AnyTool],
         setup: Setup,
-        place: WorkPosition | None,
+        work_position: WorkPosition | None,
     ) -> None:
-        if place is not None and not words.inverse_time:
+        if work_position is not None and not words.inverse_time:
             raise BadInput(
-                f"setup {setup.name}: {words.title} has no words for the rotary axes of {place.machine.title}; "
+                f"setup {setup.name}: {words.title} has no words for the rotary axes of {work_position.machine.title}; "
                 "choose another control or machine"
             )
-        self.place = place
-        self.language = ControlLanguage(words, place, (*MEANINGS, *self.modes_class.own))
+        self.work_position = work_position
+        self.language = ControlLanguage(words, work_position, (*MEANINGS, *self.modes_class.own))
         sections = Sections(
-            UprightPoses(setup.clearance) if place is None else Joints(place, setup.clearance)
+            UprightPoses(setup.clearance)
+            if work_position is None
+            else Joints(work_position, setup.clearance)
         )
         self.state = ModalState(tools=tools, setup=setup, sections=sections)
         self.modes = self.modes_class(self.language, self.state)
@@ -86,7 +88,7 @@ class Control:
         elif comment.startswith("TOOL "):
             check_tool(line, comment, self.state.tools)
         elif comment.startswith("STANDS "):
-            check_work_position(line, comment, self.state.setup, self.place)
+            check_work_position(line, comment, self.state.setup, self.work_position)
 
     def run(self, block: Block) -> None:
         """Do what one line says."""
@@ -106,7 +108,7 @@ class Control:
             self.ended = True
 
     def check(self, block: Block) -> None:
-        """Refuse what can't be understood or stands in a wrong place."""
+        """Refuse what can't be understood or stands in a wrong position."""
         line, words, codes = block.line, block.words, block.codes
         if self.ended:
             raise BadInput(

@@ -31,19 +31,19 @@ SHARES = (0.25, 0.5, 0.75)
 class Joints:
     """Points are X, Y, Z words in mm and the angles of the rotary axes in degrees."""
 
-    place: WorkPosition
+    work_position: WorkPosition
     clearance: float
 
     def above(self, point: Point, tool: AnyTool) -> Point | None:
         """See `PoseInterpreter`: an upright tool is lifted to the clearance height, a leaning one with the machine's Z beyond all that
         stands on the table."""
         words, angle = np.array([point[:3]]), np.radians([point[3:]])
-        (tip,), (axis,) = poses_of(self.place, words, angle, tool.gauge_length)
+        (tip,), (axis,) = poses_of(self.work_position, words, angle, tool.gauge_length)
         if float(np.linalg.norm(axis - UP)) < UPRIGHT:
             more = self.clearance - float(tip[2])
         else:
-            more = self.place.radius - float(
-                (tip - self.place.centre) @ lift_of(self.place, angle[0])
+            more = self.work_position.radius - float(
+                (tip - self.work_position.centre) @ lift_of(self.work_position, angle[0])
             )
         return None if more <= tolerance.WRITTEN else (*point[:2], point[2] + more, *point[3:])
 
@@ -54,7 +54,7 @@ class Joints:
         motion = np.array(rows.motion)
         turning = np.zeros(len(points), bool)
         turning[1:] = (points[1:, 3:] != points[:-1, 3:]).any(axis=1)
-        tip, axis = poses_of(self.place, words, angle, gauge)
+        tip, axis = poses_of(self.work_position, words, angle, gauge)
         centre = self._centres(rows, motion, turning, angle)
         whole = path_of(rows, tip, axis, centre)
         if not turning.any():
@@ -75,7 +75,7 @@ class Joints:
         inner = share < 1.0
         position, direction = tip[row], axis[row]
         position[inner], direction[inner] = _between(
-            self.place, words, angle, gauge, row[inner], share[inner]
+            self.work_position, words, angle, gauge, row[inner], share[inner]
         )
         path = Toolpath(
             position=position,
@@ -98,14 +98,14 @@ class Joints:
             raise BadInput(
                 f"line {rows.line[k]}: an arc in which a rotary axis turns is not understood; write lines"
             )
-        leans = np.linalg.norm(spindle_of(self.place, angle[arcs])[:, :2], axis=1) > UPRIGHT
+        leans = np.linalg.norm(spindle_of(self.work_position, angle[arcs])[:, :2], axis=1) > UPRIGHT
         for k in arcs[leans]:
             raise BadInput(
                 f"line {rows.line[k]}: an arc in the plane XY while the head leans is not understood; write lines"
             )
         if len(arcs):
             centre[arcs], _ = poses_of(
-                self.place, centre[arcs], angle[arcs], rows.tool.gauge_length
+                self.work_position, centre[arcs], angle[arcs], rows.tool.gauge_length
             )
         return centre
 
@@ -116,8 +116,8 @@ class Joints:
         turn = np.abs(angle[block] - angle[block - 1]).max(axis=1)
         first = np.maximum(1, np.ceil(turn / FIRST_PIECE)).astype(np.int64)
         owner = np.repeat(np.arange(len(block)), first)
-        place_in = np.arange(len(owner)) - np.repeat(np.cumsum(first) - first, first)
-        start, end = place_in / first[owner], (place_in + 1) / first[owner]
+        index_in_owner = np.arange(len(owner)) - np.repeat(np.cumsum(first) - first, first)
+        start, end = index_in_owner / first[owner], (index_in_owner + 1) / first[owner]
         row = block[owner]
         rapid = motion[row] == Motion.RAPID
         allowed = np.where(rapid, OPENED_RAPID, OPENED)
@@ -132,7 +132,7 @@ class Joints:
             start[again] + number / more[again] * (end - start)[again],
         )
         return row[again], np.where(
-            (number == more[again]) & (place_in[again] + 1 == first[owner][again]), 1.0, share
+            (number == more[again]) & (index_in_owner[again] + 1 == first[owner][again]), 1.0, share
         )
 
     def _strays(
@@ -146,12 +146,12 @@ class Joints:
         reach: Floats,
     ) -> Floats:
         """Return by how much (k,) mm tip or flutes leave a straight path with an even turn between shares of blocks."""
-        tip0, axis0 = _between(self.place, words, angle, gauge, row, start)
-        tip1, axis1 = _between(self.place, words, angle, gauge, row, end)
+        tip0, axis0 = _between(self.work_position, words, angle, gauge, row, start)
+        tip1, axis1 = _between(self.work_position, words, angle, gauge, row, end)
         most = np.zeros(len(row))
         for share in SHARES:
             tip, axis = _between(
-                self.place, words, angle, gauge, row, start + share * (end - start)
+                self.work_position, words, angle, gauge, row, start + share * (end - start)
             )
             straight = tip0 + share * (tip1 - tip0)
             even = even_turn(axis0, axis1, np.full(len(row), share))
@@ -163,12 +163,17 @@ class Joints:
 
 
 def _between(
-    place: WorkPosition, words: Floats, angle: Floats, gauge: float, row: Ints, share: Floats
+    work_position: WorkPosition,
+    words: Floats,
+    angle: Floats,
+    gauge: float,
+    row: Ints,
+    share: Floats,
 ) -> tuple[Floats, Floats]:
     """Return tips and axes (k, 3) at shares (k,) of blocks whose axes go evenly."""
     s = share[:, None]
     return poses_of(
-        place,
+        work_position,
         words[row - 1] + s * (words[row] - words[row - 1]),
         angle[row - 1] + s * (angle[row] - angle[row - 1]),
         gauge,

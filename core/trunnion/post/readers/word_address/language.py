@@ -40,7 +40,9 @@ class ControlLanguage:
     `known` are the meanings that the control understands.
     """
 
-    def __init__(self, words: IsoWords, place: WorkPosition | None, known: Iterable[str]) -> None:
+    def __init__(
+        self, words: IsoWords, work_position: WorkPosition | None, known: Iterable[str]
+    ) -> None:
         self.words = words
         self.motions = {code: Motion(n) for n, code in enumerate(words.motions)}
         self.units = {words.units[name]: unit for name, unit in _UNITS.items()}
@@ -48,7 +50,7 @@ class ControlLanguage:
         self.cycles = {code: CycleKind(kind) for kind, code in words.cycles.items()}
         levels = dict(zip(words.return_levels, ("initial level", "retract plane"), strict=True))
         self.refused = by_code(words.refused)
-        said = self._checked(tuple(known))
+        meanings = self._checked(tuple(known))
         self.meanings = {
             **dict.fromkeys(self.motions, "motion"),
             **dict.fromkeys(self.units, "units"),
@@ -56,7 +58,7 @@ class ControlLanguage:
             **dict.fromkeys(words.work_offsets, "work offset"),
             **dict.fromkeys(self.cycles, "cycle"),
             **{code: meaning for code, meaning in levels.items() if code},
-            **said,
+            **meanings,
         }
         self.dwell, self.length, self.tool_change = (
             self._first(m) for m in ("dwell", "length", "tool change")
@@ -67,19 +69,19 @@ class ControlLanguage:
         self.turning_plane, self.milling_plane = (
             self._first(m) for m in ("turning plane", "milling plane")
         )
-        self.ends = tuple(code for code, meaning in said.items() if meaning == "end")
+        self.ends = tuple(code for code, meaning in meanings.items() if meaning == "end")
         self.groups = (
-            (*self.motions, *self.cycles, *(c for c, m in said.items() if m == "no motion")),
+            (*self.motions, *self.cycles, *(c for c, m in meanings.items() if m == "no motion")),
             tuple(self.units),
             words.work_offsets,
             *(tuple(group.split()) for group in words.groups),
         )
-        self._find_letters(words.letters, place)
+        self._find_letters(words.letters, work_position)
 
     def _checked(self, known: tuple[str, ...]) -> dict[str, str]:
         """Return the meanings of codes as the words give them; raise `BadInput` for an unknown one, or a letter that is missing."""
-        said = by_code(self.words.codes)
-        for code, meaning in said.items():
+        meanings = by_code(self.words.codes)
+        for code, meaning in meanings.items():
             if meaning not in known:
                 raise BadInput(
                     f"dialect {self.words.title}: {code}: {meaning!r} is no meaning of a code; known: {', '.join(known)}"
@@ -88,11 +90,11 @@ class ControlLanguage:
                 raise BadInput(
                     f"dialect {self.words.title}: letters needs an entry {_NEEDED[meaning]} for {code}"
                 )
-        return said
+        return meanings
 
-    def _find_letters(self, role: dict[str, str], place: WorkPosition | None) -> None:
+    def _find_letters(self, role: dict[str, str], work_position: WorkPosition | None) -> None:
         """Find out which letters a text may have, what numbers follow them, and which codes take those that need one."""
-        self.rotary = place.names if place else ""
+        self.rotary = work_position.names if work_position else ""
         self.radius, self.turns, self.length_letter = (
             role["radius"],
             role.get("turns", ""),
@@ -110,7 +112,7 @@ class ControlLanguage:
             if codes := tuple(code for code, kind in self.cycles.items() if kind in kinds):
                 self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
         self.retract = role.get("retract", "") if self.cycles else ""
-        self.turns_work = place is None and "turning plane" in self.meanings.values()
+        self.turns_work = work_position is None and "turning plane" in self.meanings.values()
         self.moves |= set(self.retract) | ({"K"} if self.turns_work else set())
         self.states = frozenset("FST") | (
             {self.length_letter} if self.length_letter and not self.length else set()
@@ -130,10 +132,10 @@ class ControlLanguage:
         }
         if self.length_letter:
             self.ranges[self.length_letter] = COUNT
-        if place is not None:
+        if work_position is not None:
             self.ranges |= {
                 a.name: NumberRange(a.low, a.high, "degrees", math.degrees(SLACK))
-                for a in place.machine.rotary
+                for a in work_position.machine.rotary
             }
 
     def _first(self, meaning: str) -> str:

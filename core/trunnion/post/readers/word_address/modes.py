@@ -73,13 +73,13 @@ class Modes:
 
     def run(self, block: Block) -> None:
         """Do what the codes and states of a line say, all but moves and the end."""
-        said = {self.language.meanings[code] for code in block.codes}
+        given = {self.language.meanings[code] for code in block.codes}
         for meaning, step in self.before:
-            if meaning in said:
+            if meaning in given:
                 step(block)
         self.speeds(block)
         for meaning, step in self.after:
-            if meaning in said:
+            if meaning in given:
                 step(block)
 
     def speeds(self, block: Block) -> None:

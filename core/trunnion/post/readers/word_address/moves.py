@@ -15,7 +15,7 @@ from trunnion.post.readers.numbers import FEED
 from trunnion.post.readers.sections import NOWHERE, Pace, Point
 from trunnion.post.readers.word_address.arcs import centre_by_offset, centre_by_radius
 from trunnion.post.readers.word_address.blocks import Block
-from trunnion.post.readers.word_address.cycles import UP, hole_of, ways_over
+from trunnion.post.readers.word_address.cycles import UP, hole_of, path_over
 from trunnion.post.readers.word_address.language import ControlLanguage, listed
 from trunnion.post.readers.word_address.rotary import Rotary
 from trunnion.post.readers.word_address.state import ModalCycle, ModalState
@@ -106,7 +106,7 @@ class ToolMover:
             )
         self.check_feed(line, tool)
         cycle, top = hole_of(block, mode, state, self.language, start)
-        over = ways_over(mode, start, top, cycle)
+        over = path_over(mode, start, top, cycle)
         for end in over:
             state.sections.rapid(line, (*end, *start[3:]), tool, state.cutting())
         plain = expanded(cycle, np.array((over or [start])[-1][:3]), np.array(top), UP)

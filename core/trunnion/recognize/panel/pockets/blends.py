@@ -45,10 +45,10 @@ def is_corner(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
     """Return whether a rising face is a blend of two walls: curved, smooth to rising faces at two sides, each of a wider bend."""
     if not classes.rising[face] or graph.surface[face] == "plane":
         return False
-    beside = {
+    adjacent = {
         graph.across(e, face) for e in graph.edges_of[face] if graph.convexity[e] == SMOOTH
     } - {face}
-    walls = [n for n in beside if classes.rising[n] and not _stacked(graph, face, n)]
+    walls = [n for n in adjacent if classes.rising[n] and not _stacked(graph, face, n)]
     if len(walls) < 2:
         return False
     own = bend_radius(graph, face)
@@ -59,11 +59,11 @@ def is_corner(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
 
 def is_rounding(graph: FaceGraph, classes: FaceClasses, face: int) -> bool:
     """Return whether a face of the outer profile rounds a corner off: it bulges, and a wall of a wider bend runs smoothly into it."""
-    beside = [graph.across(e, face) for e in graph.edges_of[face] if graph.convexity[e] == SMOOTH]
+    adjacent = [graph.across(e, face) for e in graph.edges_of[face] if graph.convexity[e] == SMOOTH]
     own = bend_radius(graph, face)
     return bool(
         graph.bend[face] > 0
-        and any(classes.rising[n] and own < SAME_RADIUS * bend_radius(graph, n) for n in beside)
+        and any(classes.rising[n] and own < SAME_RADIUS * bend_radius(graph, n) for n in adjacent)
     )
 
 

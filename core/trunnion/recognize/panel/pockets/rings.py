@@ -35,7 +35,7 @@ class WallRing:
         return self.walls + self.corners
 
     @property
-    def stands(self) -> bool:
+    def is_island(self) -> bool:
         """Whether anything rises from the loop."""
         return bool(self.walls or self.corners or self.fillets or self.slopes)
 

@@ -89,9 +89,9 @@ def pockets_of(view: PanelSide) -> GraphFeatures:
             if number == 0:
                 continue
             inner = ring(view, floor, edges)
-            if not outer[floor].stands and inner.stands:
+            if not outer[floor].is_island and inner.is_island:
                 outer[floor] = replace(inner, drops=(*outer[floor].drops, *inner.drops))
-            elif inner.stands:
+            elif inner.is_island:
                 islands[floor].append(island_on(view, floor, inner))
             else:
                 sunk.update(
@@ -128,15 +128,15 @@ def pockets_of(view: PanelSide) -> GraphFeatures:
                 ),
             )
         )
-    standing = {t for p in found for i in p.islands for t in i.tops}
+    island_tops = {t for p in found for i in p.islands for t in i.tops}
     narrow = tuple(
         t
-        for t in tops.standing
-        if t not in standing and mean_width(view, t) <= view.settings.rib_width
+        for t in tops.islands
+        if t not in island_tops and mean_width(view, t) <= view.settings.rib_width
     )
     openings = [
         o
-        for face in (*tops.highest, *tops.standing, *tops.ribs, *floors)
+        for face in (*tops.highest, *tops.islands, *tops.ribs, *floors)
         for o in openings_in(view, face, set(owners))
     ]
     return GraphFeatures(pockets=(*found, *openings), tops=tops, ribs=tops.ribs + narrow)
@@ -157,7 +157,7 @@ def openings_in(view: PanelSide, face: int, known: set[int]) -> list[Pocket]:
         sides = inner.drops
         if (
             number == 0
-            or inner.stands
+            or inner.is_island
             or not all(view.classes.steep[s] for s in sides)
             or known.intersection(sides)
         ):
@@ -181,15 +181,15 @@ def island_on(view: PanelSide, floor: int, foot: WallRing) -> Island:
     """Return the island that stands on one inner loop of a floor: its sides, every top over them, the blends at its foot."""
     graph, steep, kind = view.graph, view.classes.steep, view.classes.kind
 
-    def stands(edge: int, face: int, to: int) -> bool:
+    def is_island(edge: int, face: int, to: int) -> bool:
         if to in (floor, *foot.fillets) or graph.box_low[to][2] < view.z(floor) - SLIVER:
             return False
         rising = steep[face] and kind[to] is FaceClass.UP and graph.convexity[edge] == CONVEX
-        beside = steep[face] and steep[to] and not _crosses_top(view, edge, face)
+        adjacent = steep[face] and steep[to] and not _crosses_top(view, edge, face)
         higher = kind[face] is FaceClass.UP and steep[to] and graph.convexity[edge] != CONVEX
-        return bool(rising or beside or higher)
+        return bool(rising or adjacent or higher)
 
-    reached = grown(graph, foot.sides, stands)
+    reached = grown(graph, foot.sides, is_island)
     sides = [r for r in reached if steep[r]]
     return Island(
         floor=floor,

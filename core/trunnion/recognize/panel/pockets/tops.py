@@ -19,19 +19,19 @@ FOOT_SHARE = 1.0 / 3.0
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tops:
     """The faces that look up, as rows: `highest` at the part's top, `ribs`, `floors` at the foot of walls (also curved ones),
-    `standing` with nothing above their border, `undercut` with material all over them."""
+    `islands` with nothing above their border, `undercut` with material all over them."""
 
     highest: tuple[int, ...]
     ribs: tuple[int, ...]
     floors: tuple[int, ...]
-    standing: tuple[int, ...]
+    islands: tuple[int, ...]
     undercut: tuple[int, ...]
 
 
 def sort_tops(view: PanelSide) -> Tops:
     """Return what the faces that look up are."""
     found: dict[str, list[int]] = {
-        n: [] for n in ("highest", "ribs", "floors", "standing", "undercut")
+        n: [] for n in ("highest", "ribs", "floors", "islands", "undercut")
     }
     for face in view.classes.rows(FaceClass.UP):
         found[_sort(view, face)].append(face)
@@ -64,7 +64,7 @@ def _sort(view: PanelSide, face: int) -> str:
         return "highest"
     share = foot_share(view, face)
     if share == 0.0:
-        return "standing"
+        return "islands"
     if view.undercut(face):
         return "undercut"
     return (

@@ -69,9 +69,9 @@ def confirm(view: PanelSide, pocket: Pocket) -> ConfirmedPocket:
                 remedy="check whether a cutter may enter from the side",
             )
         )
-    standing = max(len(view.tree.space(n).islands) for n in nodes)
-    if not is_open and len(nodes) == 1 and standing != len(pocket.islands):
-        words = (str(standing), str(len(pocket.islands)))
+    most_islands = max(len(view.tree.space(n).islands) for n in nodes)
+    if not is_open and len(nodes) == 1 and most_islands != len(pocket.islands):
+        words = (str(most_islands), str(len(pocket.islands)))
         found.append(
             remark(
                 "panel.slices-differ",

@@ -23,7 +23,7 @@ from trunnion.geometry.sheet.sheet import Measure, Sheet, sheet_of, split_finely
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.stepover.metric import metric_of, spread, stepover_measure
 
@@ -35,22 +35,22 @@ where they bend; so the highest ridge stays within a tenth of what is wanted."""
 FIRST = 0.3
 """Stepovers from the rim to the first pass: less than half a stepover from a square corner, which triangles round a little."""
 FARTHEST = 0.48
-"""Stepovers from the nearest pass beyond which a place on a ridge needs another one: where ridges branch, distances are a few hundredths
+"""Stepovers from the nearest pass beyond which a position on a ridge needs another one: where ridges branch, distances are a few hundredths
 longer than they are measured."""
 SAMPLES = 4
-"""Places that are asked on each piece of a ridge: between two of its points it can be farther from all passes than at either."""
+"""Positions that are queried on each piece of a ridge: between two of its points it can be farther from all passes than at either."""
 CLOSE, DENSE = 0.2, 0.1
 """Stepovers: nearer than this to a pass a point doesn't tell how wide a stepover is there; and how dense passes are for such distances."""
 SLIM = 0.05
 """Stepovers: a pass round less than this is left to the ridge inside of it. It would go there and back on nearly one line."""
 REACH = 1.5
-"""Stepovers that a pass along a ridge goes on past such a place: the next one between corners is not farther."""
+"""Stepovers that a pass along a ridge goes on past such a position: the next one between corners is not farther."""
 SMOOTHINGS = 3
 """Times that a ridge's points are put halfway between their neighbours: it was found triangle by triangle."""
 
 
 def scallop_passes(
-    drive: SurfaceDrive, tool: Tool, chord: float, progress: Progress = QUIET
+    drive: SurfaceDrive, tool: Tool, chord: float, progress: Progress = NO_PROGRESS
 ) -> list[Contacts]:
     """Return the passes of contacts from the rim of the drive's faces inwards, what is inside on their left, each connected part and each
     branch of it by itself; then those along ridges. Raises `Refused` for a flat end and for too large an area."""
@@ -72,7 +72,7 @@ def _passes_over(
     metric = metric_of(sheet, measure)
     progress.check()
     rims = sheet.rims()
-    # An area that is closed all round begins at its highest place.
+    # An area that is closed all round begins at its highest position.
     rim = np.concatenate(rims) if rims else np.array([np.argmax(sheet.points[:, 2])])
     progress.check()
     found = ridged(metric, *distances(metric, rim), FINENESS * longest)
@@ -149,7 +149,7 @@ def _nested(sheet: Sheet, lines: Sequence[SheetLine]) -> list[SheetLine]:
 def _along_ridges(
     found: RidgedSheet, metric: Metric, lines: Sequence[SheetLine], stepover: float
 ) -> list[tuple[Floats, Floats]]:
-    """Return points and normals (k, 3) of passes along the ridges where places are too far from all lines."""
+    """Return points and normals (k, 3) of passes along the ridges where positions are too far from all lines."""
     if not lines or not found.ridges:
         return []
     rows = np.concatenate([line.ends.ravel() for line in lines])
@@ -165,7 +165,7 @@ def _along_ridges(
             ]
         )
     )
-    ways = []
+    stretches = []
     for ridge in found.ridges:
         point, normal = _smoothed(
             found.sheet.points[ridge], found.sheet.normals[ridge], bool(ridge[0] == ridge[-1])
@@ -181,12 +181,12 @@ def _along_ridges(
             edges = np.flatnonzero(np.diff(wanted.astype(np.int8), prepend=0, append=0)).reshape(
                 -1, 2
             )
-            ways += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
-    return _in_turn(ways)
+            stretches += [(point[a:b], normal[a:b]) for a, b in edges.tolist() if b - a > 1]
+    return _in_turn(stretches)
 
 
 def _away(point: Floats, away: Floats, passes: cKDTree, stepover: float) -> tuple[Floats, Floats]:
-    """Return places on a ridge, as fractional rows (m,) of its points (k, 3), and how many stepovers (m,) they are away from all passes:
+    """Return positions on a ridge, as fractional rows (m,) of its points (k, 3), and how many stepovers (m,) they are away from all passes:
     at its points as was measured (k,), between them by the distance in space and how wide stepovers are at the points beside."""
     at = np.arange(SAMPLES * (len(point) - 1) + 1) / SAMPLES
     row = np.minimum(at.astype(np.int64), len(point) - 2)
@@ -200,21 +200,23 @@ def _away(point: Floats, away: Floats, passes: cKDTree, stepover: float) -> tupl
 
 
 def _dense(point: Floats, step: float) -> Floats:
-    """Return points at most a step (mm) apart on the straight way through points (k, 3)."""
+    """Return points at most a step (mm) apart on the straight path through points (k, 3)."""
     size = np.linalg.norm(np.diff(point, axis=0), axis=1)
     run = np.concatenate([[0.0], np.cumsum(size)])
     at = np.unique(np.concatenate([run, np.linspace(0.0, run[-1], int(run[-1] / step) + 2)]))
     return np.column_stack([np.interp(at, run, point[:, k]) for k in range(3)])
 
 
-def _in_turn(ways: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
-    """Return ways in an order in which each begins near the end of the one before, some of them the other way round."""
-    ways, order = list(ways), list[tuple[Floats, Floats]]()
-    while ways:
-        here = order[-1][0][-1] if order else ways[0][0][0]
-        gaps = np.array([[np.linalg.norm(point[k] - here) for k in (0, -1)] for point, _ in ways])
+def _in_turn(stretches: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
+    """Return paths in an order in which each begins near the end of the one before, some of them the other way round."""
+    stretches, order = list(stretches), list[tuple[Floats, Floats]]()
+    while stretches:
+        here = order[-1][0][-1] if order else stretches[0][0][0]
+        gaps = np.array(
+            [[np.linalg.norm(point[k] - here) for k in (0, -1)] for point, _ in stretches]
+        )
         row, end = divmod(int(np.argmin(gaps)), 2)
-        point, normal = ways.pop(row)
+        point, normal = stretches.pop(row)
         order.append((point[::-1], normal[::-1]) if end else (point, normal))
     return order
 

@@ -1,4 +1,4 @@
-"""Stepovers as a metric of the faces: how many passes lie between two places.
+"""Stepovers as a metric of the faces: how many passes lie between two positions.
 
 A cutter and a face that touch leave between them a gap that opens with the square of the distance across the feed, by the sum of both
 curvatures (the face's + convex). So the stepover for a scallop height h is a length in the metric (I/R + II) / 8h of the faces, I and
@@ -37,13 +37,13 @@ JUMP = 1.25
 PAST = 0.28
 """Stepovers of the rounder side that its measure holds past a jump."""
 NEARBY = 4
-"""Places on jumps that are asked from each place of an edge."""
+"""Positions on jumps that are queried from each position of an edge."""
 SHARES = 8
-"""Places of an edge that are asked whether they are past a jump."""
+"""Positions of an edge that are tested for being past a jump."""
 CORNER = math.cos(math.radians(15.0))
 """Cosine of the least turn from one piece of a line to the next that is a corner."""
 ASIDE = 0.01
-"""Of the longest piece: how far straight moves may cut a way's bends along the face; neighbours are farther apart there by that."""
+"""Of the longest piece: how far straight moves may cut a path's bends along the face; neighbours are farther apart there by that."""
 
 
 def stepover_measure(tool: Tool, height: float) -> Measure:
@@ -60,29 +60,32 @@ def stepover_measure(tool: Tool, height: float) -> Measure:
     depth = height * (1.0 - 0.5 * min(height / tool.corner_radius, 1.0))
 
     def measure(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
-        way = b - a
+        direction = b - a
         own, bend = (
-            _own_curvature(tool, way, a_normal + b_normal),
-            (way * (b_normal - a_normal)).sum(axis=1),
+            _own_curvature(tool, direction, a_normal + b_normal),
+            (direction * (b_normal - a_normal)).sum(axis=1),
         )
         gap = own + bend + UNSURE * np.maximum(-bend - SNUG * own, 0.0)
-        return np.sqrt(np.maximum(gap / (8.0 * depth), least * (way * way).sum(axis=1)))
+        return np.sqrt(np.maximum(gap / (8.0 * depth), least * (direction * direction).sum(axis=1)))
 
     return measure
 
 
-def _own_curvature(tool: Tool, way: Floats, normal: Floats) -> Floats:
-    """Return the second fundamental form (e,) of ways (e, 3) on the cutter's own surface where it touches faces of normals (e, 3)."""
-    square = (way * way).sum(axis=1)
+def _own_curvature(tool: Tool, direction: Floats, normal: Floats) -> Floats:
+    """Return the second fundamental form (e,) of paths (e, 3) on the cutter's own surface where it touches faces of normals (e, 3)."""
+    square = (direction * direction).sum(axis=1)
     if tool.form == "ball":
         return np.asarray(square / tool.radius)
     sine, cosine = np.hypot(normal[:, 0], normal[:, 1]), normal[:, 2]
     rho, _ = touching(tool, np.arctan2(sine, cosine))
     # Round about the axis, and along the profile.
-    cross = way[:, 1] * normal[:, 0] - way[:, 0] * normal[:, 1]
-    level = np.divide(cross, sine, out=np.zeros(len(way)), where=sine > 0.0) ** 2
+    cross = direction[:, 1] * normal[:, 0] - direction[:, 0] * normal[:, 1]
+    level = np.divide(cross, sine, out=np.zeros(len(direction)), where=sine > 0.0) ** 2
     around = np.divide(
-        sine, np.hypot(sine, cosine) * rho, out=np.zeros(len(way)), where=rho > tolerance.COINCIDENT
+        sine,
+        np.hypot(sine, cosine) * rho,
+        out=np.zeros(len(direction)),
+        where=rho > tolerance.COINCIDENT,
     )
     return np.asarray(
         level * around + np.maximum(square - level, 0.0) * _profile_curvature(tool, rho)
@@ -111,9 +114,9 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     """Return the lengths (e,) of edges, `PAST` stepovers past each jump at least as long as on its rounder side."""
     slope, form = _forms(sheet, lengths[side])
 
-    def along(triangle: Ints, way: Floats) -> Floats:
-        """Return the square of the length of ways (k, 3) in triangles (k,)."""
-        part = np.einsum("kij,kj->ki", slope[triangle], way)
+    def along(triangle: Ints, direction: Floats) -> Floats:
+        """Return the square of the length of paths (k, 3) in triangles (k,)."""
+        part = np.einsum("kij,kj->ki", slope[triangle], direction)
         return np.asarray(
             np.maximum(-(part * np.roll(part, -1, axis=1) * form[triangle]).sum(axis=1), 0.0)
         )
@@ -143,20 +146,20 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     # The rounder side holds no farther than the flatter one's stepovers are wide.
     density, middle = lengths / size, 0.5 * (sheet.points[ends[:, 0]] + sheet.points[ends[:, 1]])
     near = np.flatnonzero(tree.query(middle)[0] <= 0.5 * size + PAST / density)
-    place = (
+    position = (
         sheet.points[ends[near, 0]][:, None]
         + ((np.arange(SHARES) + 0.5) / SHARES)[:, None] * run[near][:, None]
     )
     farthest = PAST / float(density[near].min(initial=np.inf))
     away, found = (
         np.asarray(x)
-        for x in tree.query(place.reshape(-1, 3), k=NEARBY, distance_upper_bound=farthest)
+        for x in tree.query(position.reshape(-1, 3), k=NEARBY, distance_upper_bound=farthest)
     )
     of, which = np.nonzero(np.isfinite(away))
     mine = near[of // SHARES]
     jump = row[found[of, which]]
-    way = run[mine] / size[mine, None]
-    here = np.sqrt(along(rounder[jump], way))
+    direction = run[mine] / size[mine, None]
+    here = np.sqrt(along(rounder[jump], direction))
     facing = (sheet.normals[ends[mine, 0]] * sheet.normals[ends[edge[jump], 0]]).sum(axis=1) > 0.5
     holds = facing & (away[of, which] * here <= PAST)
     most = np.repeat(density[near], SHARES)
@@ -180,16 +183,16 @@ def spread(
     point: Floats, normal: Floats, closed: bool, radius: float, chord: float, longest: float
 ) -> tuple[Floats, Floats]:
     """Return contacts (m, 3) with normals over the curved way through contacts (k, 3), at most `longest` mm apart, and so close that
-    straight moves between them, and between points a radius above them, leave the way by no more than a chord error, and along
+    straight moves between them, and between points a radius above them, leave the path by no more than a chord error, and along
     the face by no more than `ASIDE`. Corners stay."""
     size = np.linalg.norm(np.diff(point, axis=0), axis=1)
     kept = np.concatenate([[True], size > tolerance.SHORT_MOVE])
     if not kept[-1]:
         kept[-1], kept[np.flatnonzero(kept)[-1]] = True, kept.sum() < 2
     point, normal = point[kept], normal[kept]
-    way = np.diff(point, axis=0)
-    size, turn = np.linalg.norm(way, axis=1), np.linalg.norm(np.diff(normal, axis=0), axis=1)
-    along = way / size[:, None]
+    direction = np.diff(point, axis=0)
+    size, turn = np.linalg.norm(direction, axis=1), np.linalg.norm(np.diff(normal, axis=0), axis=1)
+    along = direction / size[:, None]
     cosine = (along[1:] * along[:-1]).sum(axis=1)
     bend = np.where(cosine < CORNER, 0.0, np.arccos(np.clip(cosine, -1.0, 1.0)))
     bend = 0.5 * (np.append(bend, 0.0) + np.insert(bend, 0, 0.0))

@@ -22,7 +22,7 @@ FINENESS = 0.25
 """Of the nearest two passes' distance: width of the strips that distances are found for."""
 MOST_STRIPS = 200_000
 AIM = 0.95
-"""Of the scallop height: what planes are laid for where a face bends, since moves leave their way by a chord error there."""
+"""Of the scallop height: what planes are laid for where a face bends, since moves leave their path by a chord error there."""
 CLOSEST = 2.76
 """Heights: how near tips need to come at most. In a hollow whose radius is larger by e a tip goes e for each radian that its contact does;
 between passes d apart e (1 - cos(d / 2 e)) stays, which is no more than 0.3623 d for any e."""
@@ -41,14 +41,14 @@ class FacetSlopes:
     turns: Floats
 
     def some(self, which: Bools) -> FacetSlopes:
-        """Return some of the places."""
+        """Return some of the positions."""
         return FacetSlopes(**{f.name: getattr(self, f.name)[which] for f in fields(self)})
 
-    def along(self, way: Floats) -> tuple[Floats, Floats]:
+    def along(self, direction: Floats) -> tuple[Floats, Floats]:
         """Return how the normal turns and how the tip moves for each mm that the contact goes along unit tangents (m, 3), each (m, 3)."""
         a, b = self.edges[:, 0], self.edges[:, 1]
         aa, ab, bb = (a * a).sum(axis=1), (a * b).sum(axis=1), (b * b).sum(axis=1)
-        wa, wb = (way * a).sum(axis=1), (way * b).sum(axis=1)
+        wa, wb = (direction * a).sum(axis=1), (direction * b).sum(axis=1)
         size = np.maximum(aa * bb - ab * ab, np.finfo(float).tiny)
         first, second = ((bb * wa - ab * wb) / size)[:, None], ((aa * wb - ab * wa) / size)[:, None]
         moves = self.tips[:, 1:] - self.tips[:, :1]
@@ -57,7 +57,7 @@ class FacetSlopes:
         ] + second * moves[:, 1]
 
 
-def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> FacetSlopes:
+def slopes_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> FacetSlopes:
     """Return the triangles of the faces to be finished that an upright cutter can come to from above: those that look upwards, their
     normals' part along z above `least`."""
     skin = drive.skin
@@ -81,46 +81,46 @@ def places_of(drive: SurfaceDrive, tool: Tool, least: float = 0.0) -> FacetSlope
     )
 
 
-def tip_spacing(places: FacetSlopes, tool: Tool, height: float, across: Floats) -> Floats:
+def tip_spacing(slopes: FacetSlopes, tool: Tool, height: float, across: Floats) -> Floats:
     """Return how far apart (m,) passes in planes across a unit direction (3,) may lie at each triangle, measured between tips."""
-    lean = places.normal @ across
+    lean = slopes.normal @ across
     # Along the face, square to the feed: what is left of the direction in the tangent plane.
     share = np.sqrt(np.maximum(1.0 - lean * lean, np.finfo(float).tiny))
-    way = (across - lean[:, None] * places.normal) / share[:, None]
-    turn, move = places.along(way)
-    bend = (turn * way).sum(axis=1, keepdims=True)
-    bends = np.abs(places.turns).max(axis=(1, 2), initial=0.0) > tolerance.ANGLE
+    direction = (across - lean[:, None] * slopes.normal) / share[:, None]
+    turn, move = slopes.along(direction)
+    bend = (turn * direction).sum(axis=1, keepdims=True)
+    bends = np.abs(slopes.turns).max(axis=(1, 2), initial=0.0) > tolerance.ANGLE
     passes = stepover_measure(tool, height)(
-        np.zeros_like(way), places.normal, way, places.normal + bend * way
+        np.zeros_like(direction), slopes.normal, direction, slopes.normal + bend * direction
     )
     stepover = np.where(bends, math.sqrt(AIM), 1.0) / passes
     # Tips are nearer to each other than contacts in a hollow, and wider apart on a hill.
-    going = (move @ across) / share
+    advance = (move @ across) / share
     # What is rounder than the cutter by more than the height is left to a smaller one, wherever passes lie.
-    fits = going * tool.corner_radius > -height
+    fits = advance * tool.corner_radius > -height
     return np.asarray(
-        share * np.where(fits, np.maximum(stepover * going, CLOSEST * height), stepover)
+        share * np.where(fits, np.maximum(stepover * advance, CLOSEST * height), stepover)
     )
 
 
-def level_spacing(places: FacetSlopes, tool: Tool, height: float) -> Floats:
+def level_spacing(slopes: FacetSlopes, tool: Tool, height: float) -> Floats:
     """Return how far apart (m,) level passes may lie at each triangle, measured between tips; infinite beside an upright wall.
 
     The flank of the upper pass and the end of the lower one leave a step as well, of the drop between them times how much the wall leans:
     whatever is larger of the two holds, and a flat end leaves nothing else.
     """
-    lean = np.maximum(places.normal[:, 2], 0.0)
+    lean = np.maximum(slopes.normal[:, 2], 0.0)
     step = np.divide(height, lean, out=np.full(lean.shape, np.inf), where=lean > 0.0)
     return (
         step
         if tool.corner_radius <= 0.0
-        else np.maximum(step, tip_spacing(places, tool, height, UPRIGHT))
+        else np.maximum(step, tip_spacing(slopes, tool, height, UPRIGHT))
     )
 
 
 def marched(low: Floats, high: Floats, spacing: Floats, begin: float, end: float) -> Floats:
-    """Return places (p,) from `begin` to `end`, each as far from the one before as is allowed by all that lies between the two: things from
-    low to high (m,) with a spacing (m,) each."""
+    """Return positions (p,) from `begin` to `end`, each as far from the one before as is allowed by all that lies between the two: things
+    from low to high (m,) with a spacing (m,) each."""
     width = max(FINENESS * float(spacing.min()), (end - begin) / MOST_STRIPS)
     count = int((end - begin) / width) + 1
     begins, ends = (

@@ -1,7 +1,7 @@
 """From contacts to the passes of an upright tool: put on its contacts, followed over the skin, and cut only where it touches the area.
 
-The tool's way in plan is that of its tips on the contacts; its height is that of a drop on the whole part, so whatever other face is in
-the way lifts it. Where it then touches nothing of the area any more, the pass is interrupted.
+The tool's path in plan is that of its tips on the contacts; its height is that of a drop on the whole part, so whatever other face is in
+the path lifts it. Where it then touches nothing of the area any more, the pass is interrupted.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.choices import TOO_STEEP
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
@@ -40,7 +40,9 @@ class UprightPasses:
     steep: float
     hidden: float
 
-    def left(self, drive: SurfaceDrive, tool: Tool, stepover: float) -> tuple[Finding, ...]:
+    def remaining_findings(
+        self, drive: SurfaceDrive, tool: Tool, stepover: float
+    ) -> tuple[Finding, ...]:
         """Return what was left, as areas: lengths times a stepover (mm)."""
         steep, hidden = self.steep * stepover, self.hidden * stepover
         found = []
@@ -67,30 +69,30 @@ class UprightPasses:
         return tuple(found)
 
 
-def stood(
-    ways: Sequence[Contacts],
+def upright_passes(
+    contact_lines: Sequence[Contacts],
     drive: SurfaceDrive,
     tool: Tool,
     chord: float,
     steepest: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> UprightPasses:
     """Return the passes of an upright tool over contacts of the drive's faces, in the cutting frame.
 
     What leans by more than `steepest` (radians) from level is left out: there a tip says little of where it touches.
     """
     runs, source = [], []
-    for k, way in enumerate(ways):
-        for piece in _runs(way.normal[:, 2] >= math.cos(steepest), way.closed):
+    for k, contacts in enumerate(contact_lines):
+        for piece in _runs(contacts.normal[:, 2] >= math.cos(steepest), contacts.closed):
             runs.append(
                 Contacts(
-                    point=way.point[piece],
-                    normal=way.normal[piece],
-                    closed=way.closed and len(piece) == len(way),
+                    point=contacts.point[piece],
+                    normal=contacts.normal[piece],
+                    closed=contacts.closed and len(piece) == len(contacts),
                 )
             )
             source.append(k)
-    whole, kept = (sum(_length(w.point) for w in some) for some in (ways, runs))
+    whole, kept = (sum(_length(w.point) for w in some) for some in (contact_lines, runs))
     tips = [
         tip_at(
             tool,
@@ -105,21 +107,21 @@ def stood(
         drive.skin.drop, pieces, [t[:, :2] for t in tips], chord, lowest, progress.part(0.0, 0.7)
     )
     plan = np.concatenate([np.zeros((0, 2)), *(f[:, :2] for f in followed)])
-    facet = drive.skin.drop.touch(plan, pieces, lowest, progress.part(0.7, 0.95))[1]
+    facet = drive.skin.drop.contacts(plan, pieces, lowest, progress.part(0.7, 0.95))[1]
     on_area = (facet >= 0) & drive.skin.of(drive.faces)[np.maximum(facet, 0)]
     passes, owner, begin = [], [], 0
-    for way, tip, k, asked in zip(runs, followed, source, tips, strict=True):
-        touches, begin = on_area[begin : begin + len(tip)], begin + len(tip)
+    for contacts, tip, k, target in zip(runs, followed, source, tips, strict=True):
+        on_faces, begin = on_area[begin : begin + len(tip)], begin + len(tip)
         tip = tip + drive.allowance * UPRIGHT
-        normal = way.normal[cKDTree(asked[:, :2]).query(tip[:, :2])[1]]
-        for piece in _runs(touches, way.closed):
+        normal = contacts.normal[cKDTree(target[:, :2]).query(tip[:, :2])[1]]
+        for piece in _runs(on_faces, contacts.closed):
             if len(piece) > 1 and _length(tip[piece]) >= SHORTEST:
                 passes.append(
                     Pass(
                         tip=tip[piece],
                         axis=np.broadcast_to(UPRIGHT, (len(piece), 3)),
                         normal=normal[piece],
-                        closed=way.closed and len(piece) == len(tip),
+                        closed=contacts.closed and len(piece) == len(tip),
                     )
                 )
                 owner.append(k)
@@ -135,23 +137,24 @@ def _lifted(
     """Return over what length in mm tips (k, 3) on contacts can't stand, for another face would lift them by more than an error."""
     if not tips:
         return 0.0
-    places = np.concatenate(tips)
+    positions = np.concatenate(tips)
     lifted = (
-        drive.skin.drop.drop(places[:, :2], pieces, lowest) + drive.allowance > places[:, 2] + error
+        drive.skin.drop.drop(positions[:, :2], pieces, lowest) + drive.allowance
+        > positions[:, 2] + error
     )
     line = np.repeat(np.arange(len(tips)), [len(t) for t in tips])
     both = lifted[1:] & lifted[:-1] & (line[1:] == line[:-1])
-    return float(np.linalg.norm(np.diff(places, axis=0), axis=1)[both].sum())
+    return float(np.linalg.norm(np.diff(positions, axis=0), axis=1)[both].sum())
 
 
 def _runs(wanted: Bools, closed: bool) -> list[Ints]:
-    """Return the rows of each run of places (k,) that are wanted; on a closed way, whose last place is its first one, a run may pass over
-    where it begins."""
+    """Return the rows of each run of positions (k,) that are wanted; on a closed way, whose last place is its first one, a run may pass
+    over where it begins."""
     if wanted.all():
         return [np.arange(len(wanted))]
     rows = np.arange(len(wanted))
     if closed:
-        # Begin behind a place that isn't wanted, so that no run is torn.
+        # Begin behind a position that isn't wanted, so that no run is torn.
         first = int(np.flatnonzero(~wanted[:-1])[0]) if not wanted[:-1].all() else 0
         rows = np.append(np.roll(rows[:-1], -first), first)
     ends = np.flatnonzero(np.diff(wanted[rows].astype(np.int8), prepend=0, append=0))

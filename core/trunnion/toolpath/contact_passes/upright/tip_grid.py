@@ -1,4 +1,4 @@
-"""Where the tip of a cutter may be while it touches an area, in plan: a grid of places to drop it at."""
+"""Where the tip of a cutter may be while it touches an area, in plan: a grid of positions to drop it at."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MOST_POINTS = 1_500_000
 
 
 def spread(tips: Floats, step: float) -> Floats:
-    """Return places (n, 3) over triangles (m, 3, 3), no farther than `step` apart on each."""
+    """Return positions (n, 3) over triangles (m, 3, 3), no farther than `step` apart on each."""
     sides = np.linalg.norm(tips - np.roll(tips, -1, axis=1), axis=2).max(axis=1)
     parts = np.maximum(np.ceil(sides / step), 1.0).astype(np.int64)
     out = []

@@ -1,6 +1,6 @@
 """Following a dropped cutter along lines in plan: where its tip goes, in as few straight moves as a chord error allows.
 
-All lines are worked on together. Places are put in between (halving) until every chord's middle is on the way and no chord climbs so
+All lines are worked on together. Positions are put in between (halving) until every chord's middle is on the path and no chord climbs so
 differently from its neighbours that a kink could hide in it. Then those that aren't needed are taken out (Douglas and Peucker), which keeps
 kinks since they lie farthest from any chord.
 """
@@ -15,15 +15,15 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import RHO1, height_at
 from trunnion.geometry.surface.drop_surface import DropSurface
-from trunnion.progress import QUIET, Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 UNSEEN = 0.5
-"""Of the chord error: what stands up between two places of a way, too narrow to be seen from either, is at most so high."""
+"""Of the chord error: what stands up between two positions of a path, too narrow to be seen from either, is at most so high."""
 WIDEST = 0.06
-"""Of the cutter's radius: places of a way are never farther apart, whatever would be seen; a wave could hide between them."""
+"""Of the cutter's radius: positions of a path are never farther apart, whatever would be seen; a wave could hide between them."""
 HALVINGS = 30
 SEEN, THINNED = 0.1, 0.3
-"""Shares of the chord error: how far a middle may be from its chord, and how far a place that is taken out."""
+"""Shares of the chord error: how far a middle may be from its chord, and how far a position that is taken out."""
 
 
 def follow(
@@ -32,17 +32,21 @@ def follow(
     curves: Sequence[Floats],
     chord: float,
     lowest: float,
-    progress: Progress = QUIET,
+    progress: Progress = NO_PROGRESS,
 ) -> list[Floats]:
     """Return the tips (n, 3) of a cutter that follows each plan polyline (k, 2), as high as `DropSurface.drop` puts them.
 
-    Between two tips lies a straight move that leaves the cutter's way by at most `chord` mm; the ends and every kink of the way stay.
+    Between two tips lies a straight move that leaves the cutter's path by at most `chord` mm; the ends and every kink of the path stay.
     Where nothing is under the cutter its tip is at `lowest`.
     """
     if not len(curves):
         return []
-    places, line = _spaced(curves, 2.0 * _sight(pieces, chord))
-    tips = np.column_stack([places, drop.drop(places, pieces, lowest, progress.part(0.0, 0.3))])
+    # Drop at even steps, close enough that nothing as wide as the cutter sees hides between two.
+    positions, line = _spaced(curves, 2.0 * _sight(pieces, chord))
+    tips = np.column_stack(
+        [positions, drop.drop(positions, pieces, lowest, progress.part(0.0, 0.3))]
+    )
+    # Halve: invariant, `is_open[k]` marks the chord from tip k to k + 1 whose middle may still be off it by more than SEEN chord.
     is_open = np.append(line[1:] == line[:-1], False)
     for k in range(HALVINGS):
         rows = np.flatnonzero(is_open)
@@ -51,7 +55,7 @@ def follow(
         middles = 0.5 * (tips[rows, :2] + tips[rows + 1, :2])
         share = progress.part(1.0 - 0.7 * 0.5**k, 1.0 - 0.7 * 0.5 ** (k + 1))
         found = np.column_stack([middles, drop.drop(middles, pieces, lowest, share)])
-        is_open[rows] = beside(found, tips[rows], tips[rows + 1]) > SEEN * chord
+        is_open[rows] = chord_distance(found, tips[rows], tips[rows + 1]) > SEEN * chord
         tips, line = np.insert(tips, rows + 1, found, axis=0), np.insert(line, rows + 1, line[rows])
         is_open = np.insert(is_open, rows + 1, is_open[rows])
         is_open |= _bent(tips, line, chord)
@@ -59,15 +63,17 @@ def follow(
             np.hypot(*np.diff(tips[:, :2], axis=0).T) > chord
         )
     progress.check()
+    # Thin: the rest of the chord error pays for the tips that are left out.
     kept = thinned(tips, line, THINNED * chord)
     return np.split(tips[kept], np.flatnonzero(np.diff(line[kept])) + 1)
 
 
 def thinned(points: Floats, line: Ints, chord: float) -> Bools:
-    """Say which points (n, 3) of lines, numbered (n,) in ascending order, are needed so that none is farther than `chord` from its line.
+    """Return which points (n, 3) of lines, numbered (n,) in ascending order, are needed so that none is farther than `chord` from its line.
 
     The first and last point of each line are.
     """
+    # Douglas and Peucker (1973), all lines at once: the farthest point of each gap is kept until none is farther than the chord error.
     n = len(points)
     kept = np.ones(n, dtype=bool)
     kept[1:-1] = (line[1:-1] != line[:-2]) | (line[1:-1] != line[2:])
@@ -75,7 +81,7 @@ def thinned(points: Floats, line: Ints, chord: float) -> Bools:
     while len(rows):
         ends = np.flatnonzero(kept)
         after = np.searchsorted(ends, rows)
-        off = beside(points[rows], points[ends[after - 1]], points[ends[after]])
+        off = chord_distance(points[rows], points[ends[after - 1]], points[ends[after]])
         first = np.flatnonzero(np.diff(after, prepend=-1))
         most = np.maximum.reduceat(off, first)
         owner = np.repeat(np.arange(len(first)), np.diff(np.append(first, len(rows))))
@@ -87,32 +93,36 @@ def thinned(points: Floats, line: Ints, chord: float) -> Bools:
     return kept
 
 
-def beside(points: Floats, start: Floats, end: Floats) -> Floats:
-    """Return how far points (n, 3) are from the straight ways (n, 3) from a start to an end."""
-    way, to = end - start, points - start
-    square = (way * way).sum(axis=1)
+def chord_distance(points: Floats, start: Floats, end: Floats) -> Floats:
+    """Return how far points (n, 3) are from the straight paths (n, 3) from a start to an end."""
+    direction, to = end - start, points - start
+    square = (direction * direction).sum(axis=1)
     share = np.clip(
-        np.divide((to * way).sum(axis=1), square, out=np.zeros(len(way)), where=square > 0.0),
+        np.divide(
+            (to * direction).sum(axis=1), square, out=np.zeros(len(direction)), where=square > 0.0
+        ),
         0.0,
         1.0,
     )
-    off: Floats = np.linalg.norm(to - share[:, None] * way, axis=1)
+    off: Floats = np.linalg.norm(to - share[:, None] * direction, axis=1)
     return off
 
 
 def _bent(tips: Floats, line: Ints, chord: float) -> Bools:
-    """Say of each tip (n,) whether the chord from it to the next climbs so differently from its neighbours that a kink may hide in it."""
-    way = np.diff(tips, axis=0)
-    level = np.hypot(way[:, 0], way[:, 1])
-    turn = np.abs(np.diff(np.arctan2(way[:, 2], level)))
+    """Return for each tip (n,) whether the chord from it to the next climbs so differently from its neighbours that a kink may hide in
+    it."""
+    direction = np.diff(tips, axis=0)
+    level = np.hypot(direction[:, 0], direction[:, 1])
+    turn = np.abs(np.diff(np.arctan2(direction[:, 2], level)))
     turn[line[2:] != line[:-2]] = 0.0
-    length = np.hypot(level, way[:, 2])
+    length = np.hypot(level, direction[:, 2])
     hidden = 0.25 * length * np.maximum(np.append(turn, 0.0), np.insert(turn, 0, 0.0))
     return np.append(hidden > SEEN * chord, False)
 
 
 def _sight(pieces: Floats, chord: float) -> float:
-    """Return how far apart places may be so that nothing higher than `UNSEEN` chords hides between them: as wide as the cutter is there."""
+    """Return how far apart positions may be so that nothing higher than `UNSEEN` chords hides between them: as wide as the cutter is
+    there."""
     radius = float(pieces[-1, RHO1])
     low, high = 0.0, radius
     for _ in range(HALVINGS):
@@ -131,10 +141,12 @@ def _spaced(curves: Sequence[Floats], step: float) -> tuple[Floats, Ints]:
     line = np.repeat(np.arange(len(curves)), [len(c) for c in curves])
     points = np.concatenate([np.asarray(c, dtype=np.float64) for c in curves])
     inside = np.append(line[1:] == line[:-1], False)
-    way = np.vstack([np.diff(points, axis=0), np.zeros((1, 2))])
+    direction = np.vstack([np.diff(points, axis=0), np.zeros((1, 2))])
     count = np.where(
-        inside, np.maximum(np.ceil(np.hypot(way[:, 0], way[:, 1]) / step), 1.0), 1.0
+        inside, np.maximum(np.ceil(np.hypot(direction[:, 0], direction[:, 1]) / step), 1.0), 1.0
     ).astype(np.int64)
     rows = np.repeat(np.arange(len(points)), count)
     share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)) / count[rows]
-    return points[rows] + share[:, None] * np.where(inside[rows, None], way[rows], 0.0), line[rows]
+    return points[rows] + share[:, None] * np.where(inside[rows, None], direction[rows], 0.0), line[
+        rows
+    ]

@@ -52,4 +52,4 @@ def upright_path(
         reversing=reversing,
     )
     path = linked(passes, drive, tool, data, stock, setup, parameters, progress)
-    return Planned(path=path, findings=made.left(drive, tool, stepover))
+    return Planned(path=path, findings=made.remaining_findings(drive, tool, stepover))

@@ -16,7 +16,7 @@ from numba import njit
 from trunnion.geometry.arrays import Floats, Ints
 
 BINS = 16
-"""Places along each side where a cut is tried."""
+"""Positions along each side where a cut is tried."""
 DEEPEST = 128
 
 
@@ -99,11 +99,11 @@ def _partition_rows(rows: Ints, low: Floats, high: Floats, middle: Floats, keep:
         for r in rows:
             first, last = min(first, middle[r, k]), max(last, middle[r, k])
         if last > first:
-            weight, place = _cheapest_split(rows, low, high, middle[:, k], first, last - first)
+            weight, position = _cheapest_split(rows, low, high, middle[:, k], first, last - first)
             if weight < cost:
-                cost, along, at, least, size = weight, k, place, first, last - first
+                cost, along, at, least, size = weight, k, position, first, last - first
     if along < 0:
-        # All are about one place: halved by count.
+        # All are about one position: halved by count.
         return len(rows) // 2
     cut = rest = 0
     for r in rows:

@@ -10,7 +10,7 @@ six points:
 
 * the half-space of the body against the triangle's own normal, s(n) - n . p: exact where the
   contact is inside the triangle, however large that is;
-* tangents of D at the hull's middle and at the place nearest to the body's core: exact where the
+* tangents of D at the hull's middle and at the position nearest to the body's core: exact where the
   contact is on an edge or a corner;
 * any mixture of two of them, (1 - m) one + m other with m from 0 to 1, which may be lower than
   both.
@@ -50,12 +50,12 @@ from trunnion.verify.kernels.body import (
 from trunnion.verify.kernels.tool_motion import (
     END_COLUMNS,
     FLAT,
+    MOTION_COLUMNS,
     S_ANGLE,
     S_AXIS,
     S_FROM,
     S_TO,
     SPAN_COLUMNS,
-    WAY_COLUMNS,
     axis_at,
     chord_sag,
     fill_swept_segment,
@@ -102,12 +102,12 @@ def _depth_and_normal(
 
 @njit(cache=True, nogil=True)
 def swept_depth_at(
-    way: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float
+    motion: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float
 ) -> float:
     """Return the depth (mm) of a point of space in a body at a share t of the block: exact, so
     attained."""
-    ax, ay, az = axis_at(way, t)
-    cx, cy, cz = tip_at(way, t)
+    ax, ay, az = axis_at(motion, t)
+    cx, cy, cz = tip_at(motion, t)
     return _depth_and_normal(arcs, first, last, ax, ay, az, px - cx, py - cy, pz - cz)[0]
 
 
@@ -244,7 +244,7 @@ def _closest_point_on_triangle(p: Floats, x: float, y: float, z: float) -> tuple
 
 @njit(cache=True, nogil=True)
 def _raise_attained(
-    way: Floats,
+    motion: Floats,
     t: float,
     arcs: Floats,
     first: int,
@@ -256,7 +256,7 @@ def _raise_attained(
 ) -> None:
     """Raise found (4,), depth and position, to the depth of a point of space at a share of the block
     where that is deeper."""
-    depth = swept_depth_at(way, t, arcs, first, last, px, py, pz)
+    depth = swept_depth_at(motion, t, arcs, first, last, px, py, pz)
     if depth > found[0]:
         found[0], found[1], found[2], found[3] = depth, px, py, pz
 
@@ -265,7 +265,7 @@ def _raise_attained(
 def _task_bound(
     task: Floats,
     normal: Floats,
-    way: Floats,
+    motion: Floats,
     arcs: Floats,
     first: int,
     last: int,
@@ -287,7 +287,7 @@ def _task_bound(
     workspace.
     """
     if span[S_FROM] != task[T_FROM] or span[S_TO] != task[T_TO]:
-        fill_swept_segment(way, task[T_FROM], task[T_TO], ends, span)
+        fill_swept_segment(motion, task[T_FROM], task[T_TO], ends, span)
     # True positions lie within `drift` of the hull and D has slope 1: the hull's bound must be
     # below the queried depth by that much.
     ax, ay, az = span[S_AXIS], span[S_AXIS + 1], span[S_AXIS + 2]
@@ -325,7 +325,7 @@ def _task_bound(
     least = _tangent_plane_bound(arcs, first, last, ax, ay, az, x, y, z, six, cuts[2])
     a, b, c = CORNERS, CORNERS + 3, CORNERS + 6
     _raise_attained(
-        way,
+        motion,
         task[T_FROM] + s * (task[T_TO] - task[T_FROM]),
         arcs,
         first,
@@ -454,14 +454,14 @@ def _choose_split(task: Floats, six: Floats, is_drift: bool) -> float:
     longest, at = 0.0, 0
     for i in range(3):
         j = (i + 1) % 3
-        square = way = 0.0
+        square = length = 0.0
         for k in range(3):
             square += (task[CORNERS + 3 * j + k] - task[CORNERS + 3 * i + k]) ** 2
-            way += (six[i + 3, k] - six[i, k]) ** 2
+            length += (six[i + 3, k] - six[i, k]) ** 2
         if square > longest:
             longest, at = square, i + 1
-        if way > longest:
-            longest, at = way, 0
+        if length > longest:
+            longest, at = length, 0
     return float(at)
 
 
@@ -492,7 +492,7 @@ def _accept_bound(task: Floats, found: Floats) -> None:
 def triangle_contact(
     corners: Floats,
     normal: Floats,
-    way: Floats,
+    motion: Floats,
     t0: float,
     t1: float,
     arcs: Floats,
@@ -525,7 +525,7 @@ def triangle_contact(
         _task_bound(
             tasks[0],
             normal,
-            way,
+            motion,
             arcs,
             first,
             last,
@@ -556,7 +556,7 @@ def triangle_contact(
         one = _task_bound(
             tasks[top],
             normal,
-            way,
+            motion,
             arcs,
             first,
             last,
@@ -572,7 +572,7 @@ def triangle_contact(
         other = _task_bound(
             tasks[top + 1],
             normal,
-            way,
+            motion,
             arcs,
             first,
             last,
@@ -659,7 +659,7 @@ def triangle_contact_loop(
     settle: float,
     depth: Floats,
     which: Ints,
-    place: Floats,
+    position: Floats,
     face_depth: Floats,
     face_move: Ints,
 ) -> None:
@@ -671,32 +671,36 @@ def triangle_contact_loop(
     (t,). bound (k,) mm: how far a depth may be below the true one; enough (k,) mm: depths up to it
     are not reported.
 
-    Fills depth (k, 2) mm, of what cuts and what does not, which (k, 2) faces, place (k, 2, 3), and
+    Fills depth (k, 2) mm, of what cuts and what does not, which (k, 2) faces, position (k, 2, 3), and
     face_depth, face_move (f, 2). A move deeper than `settle` may stop there, and depths beyond
     `DEEP` are only known to be at least that.
     """
-    way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
+    motion, ends, span = (
+        np.zeros(MOTION_COLUMNS),
+        np.zeros((2, END_COLUMNS)),
+        np.zeros(SPAN_COLUMNS),
+    )
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     tasks, task, found = np.zeros((TASKS, TASK_COLUMNS)), np.zeros(TASK_COLUMNS), np.zeros(4)
     six, cuts, flat = np.zeros((6, 3)), np.zeros((3, 6)), np.zeros((3, 3))
-    best, best_place, stamp = (
+    best, best_position, stamp = (
         np.full((n_faces, 2), -np.inf),
         np.zeros((n_faces, 2, 3)),
         np.full(n_faces, -1),
     )
-    touched = np.zeros(n_faces, np.int64)
+    reached = np.zeros(n_faces, np.int64)
     for k in range(first, last):
         n = rows[k]
-        fill_tool_motion(start[n], end[n], axis[n], end_axis[n], centre[n], sweep[n], way)
+        fill_tool_motion(start[n], end[n], axis[n], end_axis[n], centre[n], sweep[n], motion)
         # What was filled for the move before is not this one's, though its shares be the same.
         near[S_FROM] = near[S_TO] = -1.0
-        n_touched, done = 0, False
+        n_reached, done = 0, False
         for p in range(piece_start[tool[n]], piece_start[tool[n] + 1]):
             a, b = int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST])
             column = 0 if pieces[p, KIND] == 0.0 else 1
-            count = segment_count(way, pieces[p, R_MAX])
+            count = segment_count(motion, pieces[p, R_MAX])
             for q in range(count):
-                fill_swept_segment(way, q / count, (q + 1) / count, ends, span)
+                fill_swept_segment(motion, q / count, (q + 1) / count, ends, span)
                 node = 0
                 # Preorder traversal; a subtree is skipped when its box cannot be entered by more
                 # than `enough`, or all of it is one face that is already known to be `DEEP`.
@@ -710,8 +714,8 @@ def triangle_contact_loop(
                         f = face[m]
                         if stamp[f] != k:
                             stamp[f], best[f, 0], best[f, 1] = k, -np.inf, -np.inf
-                            touched[n_touched] = f
-                            n_touched += 1
+                            reached[n_reached] = f
+                            n_reached += 1
                         # The face's depth so far is the one to beat: triangles of a face share it.
                         found[0] = before = best[f, column]
                         if before >= DEEP:
@@ -719,7 +723,7 @@ def triangle_contact_loop(
                         triangle_contact(
                             corners[m],
                             normals[m],
-                            way,
+                            motion,
                             q / count,
                             (q + 1) / count,
                             arcs,
@@ -739,20 +743,20 @@ def triangle_contact_loop(
                         )
                         if found[0] > before:
                             best[f, column] = found[0]
-                            best_place[f, column] = found[1:]
+                            best_position[f, column] = found[1:]
                             if found[0] > settle:
                                 done = True
                                 break
                     node += 1
         # Of equal depths the lower face row: the result doesn't depend on the order of the tree.
-        for i in range(n_touched):
-            f = touched[i]
+        for i in range(n_reached):
+            f = reached[i]
             for column in range(2):
                 d = best[f, column]
                 if d <= enough[k]:
                     continue
                 if d > depth[k, column] or (d == depth[k, column] and f < which[k, column]):
                     depth[k, column], which[k, column] = d, f
-                    place[k, column] = best_place[f, column]
+                    position[k, column] = best_position[f, column]
                 if d > face_depth[f, column]:
                     face_depth[f, column], face_move[f, column] = d, n

@@ -37,10 +37,10 @@ from trunnion.verify.kernels.contact.facets import (
 )
 from trunnion.verify.kernels.tool_motion import (
     END_COLUMNS,
+    MOTION_COLUMNS,
     S_FROM,
     S_TO,
     SPAN_COLUMNS,
-    WAY_COLUMNS,
     fill_swept_segment,
     fill_tool_motion,
 )
@@ -52,7 +52,7 @@ def blocked_by_known(
     axis: Floats,
     arcs: Floats,
     pieces: Floats,
-    places: Floats,
+    positions: Floats,
     count: int,
     deeper: float,
 ) -> bool:
@@ -66,7 +66,7 @@ def blocked_by_known(
     """
     for i in range(count):
         # The point in the tool's meridian: height along the axis and distance from it.
-        x, y, z = places[i, 0] - tip[0], places[i, 1] - tip[1], places[i, 2] - tip[2]
+        x, y, z = positions[i, 0] - tip[0], positions[i, 1] - tip[1], positions[i, 2] - tip[2]
         h = x * axis[0] + y * axis[1] + z * axis[2]
         rho = math.sqrt(max(x * x + y * y + z * z - h * h, 0.0))
         for p in range(len(pieces)):
@@ -77,28 +77,28 @@ def blocked_by_known(
                 arcs, int(pieces[p, CLOSED_FIRST]), int(pieces[p, CLOSED_LAST]), rho, h
             )
             if depth > deeper:
-                _move_to_front(places, i, places[i, 0], places[i, 1], places[i, 2])
+                _move_to_front(positions, i, positions[i, 0], positions[i, 1], positions[i, 2])
                 return True
     return False
 
 
 @njit(cache=True, nogil=True)
-def insert_obstacle(places: Floats, count: int, x: float, y: float, z: float) -> int:
-    """Insert an obstacle (mm) at the front of the `count` known ones in places (w, 3), dropping the
+def insert_obstacle(positions: Floats, count: int, x: float, y: float, z: float) -> int:
+    """Insert an obstacle (mm) at the front of the `count` known ones in positions (w, 3), dropping the
     last when all rows are in use; return the new count."""
-    count = min(count + 1, len(places))
-    _move_to_front(places, count - 1, x, y, z)
+    count = min(count + 1, len(positions))
+    _move_to_front(positions, count - 1, x, y, z)
     return count
 
 
 @njit(cache=True, nogil=True)
-def _move_to_front(places: Floats, at: int, x: float, y: float, z: float) -> None:
-    """Shift rows 0 to at - 1 of places (w, 3) down by one and write (x, y, z) into row 0; the old row
+def _move_to_front(positions: Floats, at: int, x: float, y: float, z: float) -> None:
+    """Shift rows 0 to at - 1 of positions (w, 3) down by one and write (x, y, z) into row 0; the old row
     `at` is overwritten."""
     for i in range(at, 0, -1):
         for k in range(3):
-            places[i, k] = places[i - 1, k]
-    places[0, 0], places[0, 1], places[0, 2] = x, y, z
+            positions[i, k] = positions[i - 1, k]
+    positions[0, 0], positions[0, 1], positions[0, 2] = x, y, z
 
 
 @njit(cache=True, nogil=True)
@@ -108,30 +108,30 @@ def blocked_by_known_loop(
     rows: Ints,
     arcs: Floats,
     pieces: Floats,
-    places: Floats,
+    positions: Floats,
     count: Ints,
     deeper: float,
     stopped: Bools,
 ) -> None:
     """Fill stopped (n,) with whether a known obstacle rules out each of n poses of one tool.
 
-    tips, axes (n, 3); rows (n,) the position of each pose among places (k, w, 3) with count (k,)
+    tips, axes (n, 3); rows (n,) the position of each pose among positions (k, w, 3) with count (k,)
     known ones. `deeper` (mm) as in `blocked_by_known`.
     """
     for n in range(len(tips)):
         stopped[n] = blocked_by_known(
-            tips[n], axes[n], arcs, pieces, places[rows[n]], count[rows[n]], deeper
+            tips[n], axes[n], arcs, pieces, positions[rows[n]], count[rows[n]], deeper
         )
 
 
 @njit(cache=True, nogil=True)
-def insert_obstacle_loop(found: Floats, rows: Ints, places: Floats, count: Ints) -> None:
-    """Add the points found (n, 3) that stopped poses, NaN where none did, to the lists places (k, w,
+def insert_obstacle_loop(found: Floats, rows: Ints, positions: Floats, count: Ints) -> None:
+    """Add the points found (n, 3) that stopped poses, NaN where none did, to the lists positions (k, w,
     3), count (k,) of the positions rows (n,)."""
     for n in range(len(found)):
         if not math.isnan(found[n, 0]):
             count[rows[n]] = insert_obstacle(
-                places[rows[n]], count[rows[n]], found[n, 0], found[n, 1], found[n, 2]
+                positions[rows[n]], count[rows[n]], found[n, 0], found[n, 1], found[n, 2]
             )
 
 
@@ -153,7 +153,7 @@ def pose_search_loop(
     n_faces: int,
     allowed: float,
     bound: float,
-    places: Floats,
+    positions: Floats,
     count: Ints,
     found: Bools,
 ) -> None:
@@ -162,14 +162,18 @@ def pose_search_loop(
 
     tips, axes (k, a, 3): a candidate poses of one tool at each of k positions; only those `wanted`
     (k, a) are tried, in order, up to the first clear one. boxes, skip, leaves, corners, normals,
-    face: the tree of triangles as in `kernels/contact/facets.py`. places (k, w, 3), count (k,): known
+    face: the tree of triangles as in `kernels/contact/facets.py`. positions (k, w, 3), count (k,): known
     obstacles, extended here.
 
     A pose counts as clear exactly when `contact_loop` of `kernels/contact/facets.py` with the same
     `allowed` and `bound` finds nothing deeper, since both visit the triangles in the same order
     with the same pruning: the deepest contact of a clear pose is at most allowed + bound.
     """
-    way, ends, span = np.zeros(WAY_COLUMNS), np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
+    motion, ends, span = (
+        np.zeros(MOTION_COLUMNS),
+        np.zeros((2, END_COLUMNS)),
+        np.zeros(SPAN_COLUMNS),
+    )
     near_ends, near = np.zeros((2, END_COLUMNS)), np.zeros(SPAN_COLUMNS)
     tasks, task, deepest = np.zeros((TASKS, TASK_COLUMNS)), np.zeros(TASK_COLUMNS), np.zeros(4)
     six, cuts, flat, nowhere = (
@@ -184,15 +188,15 @@ def pose_search_loop(
             # Neighbouring positions share obstacles: an empty list starts as a copy of the previous
             # one. The first of a chunk starts empty, so that the result doesn't depend on how the
             # work is divided.
-            places[k], count[k] = places[k - 1], count[k - 1]
+            positions[k], count[k] = positions[k - 1], count[k - 1]
         for n in range(tips.shape[1]):
             if not wanted[k, n] or blocked_by_known(
-                tips[k, n], axes[k, n], arcs, pieces, places[k], count[k], allowed + bound
+                tips[k, n], axes[k, n], arcs, pieces, positions[k], count[k], allowed + bound
             ):
                 continue
             # A static pose is a motion of no length: one span over its whole path.
-            fill_tool_motion(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, way)
-            fill_swept_segment(way, 0.0, 1.0, ends, span)
+            fill_tool_motion(tips[k, n], tips[k, n], axes[k, n], axes[k, n], nowhere, 0.0, motion)
+            fill_swept_segment(motion, 0.0, 1.0, ends, span)
             # A share no span has: the cached span of the previous pose must not be taken for this
             # one's.
             near[S_FROM] = near[S_TO] = -1.0
@@ -217,7 +221,7 @@ def pose_search_loop(
                         triangle_contact(
                             corners[m],
                             normals[m],
-                            way,
+                            motion,
                             0.0,
                             1.0,
                             arcs,
@@ -238,7 +242,7 @@ def pose_search_loop(
                         if deepest[0] > allowed:
                             clear = False
                             count[k] = insert_obstacle(
-                                places[k], count[k], deepest[1], deepest[2], deepest[3]
+                                positions[k], count[k], deepest[1], deepest[2], deepest[3]
                             )
                             break
                         best[f, column] = deepest[0]

@@ -864,11 +864,11 @@ def contact_points(
     region_z: Floats,
     region_face: Ints,
     face: Ints,
-    place: Floats,
+    position: Floats,
 ) -> None:
-    """Fill face (k, 2) and place (k, 2, 3) with where `strip_contact_loop` found its depths.
+    """Fill face (k, 2) and position (k, 2, 3) with where `strip_contact_loop` found its depths.
 
-    On a guide the nearest to the path of 65 even points is taken: a place to show, not part of any
+    On a guide the nearest to the path of 65 even points is taken: a position to show, not part of any
     bound.
     """
     path = np.zeros(MOVE_COLUMNS)
@@ -879,7 +879,7 @@ def contact_points(
             if found < -1:
                 part_of_move(move, u, u, path)
                 face[k, kind] = region_face[-2 - found]
-                place[k, kind, 0], place[k, kind, 1], place[k, kind, 2] = (
+                position[k, kind, 0], position[k, kind, 1], position[k, kind, 2] = (
                     path[X0],
                     path[Y0],
                     region_z[-2 - found],
@@ -891,7 +891,7 @@ def contact_points(
                     distance = point_distance(x, y, move)
                     if distance < nearest:
                         nearest = distance
-                        place[k, kind, 0], place[k, kind, 1], place[k, kind, 2] = x, y, z
+                        position[k, kind, 0], position[k, kind, 1], position[k, kind, 2] = x, y, z
 
 
 @njit(cache=True, nogil=True)

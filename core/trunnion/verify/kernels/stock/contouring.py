@@ -32,12 +32,12 @@ Ends = tuple[Floats, Floats, Floats]
 
 
 @njit(cache=True, nogil=True)
-def _nearest_crossing(count: Ints, ends: Floats, ray: int, place: float, reach: float) -> float:
-    """Return the end of material (mm) on a ray that is nearest to a place, NaN where none is within
+def _nearest_crossing(count: Ints, ends: Floats, ray: int, position: float, reach: float) -> float:
+    """Return the end of material (mm) on a ray that is nearest to a position, NaN where none is within
     `reach` (mm)."""
     best, found = reach, np.nan
     for k in range(count[ray]):
-        away = abs(ends[ray, k] - place)
+        away = abs(ends[ray, k] - position)
         if away <= best:
             best, found = away, ends[ray, k]
     return found
@@ -56,11 +56,11 @@ def _edge_crossing(
     pitch: float,
     step: int,
     has: Bools,
-    place: Floats,
+    position: Floats,
     normal: Floats,
 ) -> None:
     # The two other axes in cyclic order: ray v * cells[u] + u.
-    """Fill place (3,) and normal (3,) with where the surface crosses a lattice edge along `axis` from
+    """Fill position (3,) and normal (3,) with where the surface crosses a lattice edge along `axis` from
     the node of a cell (3,), and its outward unit normal there.
 
     `leaves`: material ends upwards along the edge. Without a bundle or an end on its ray the
@@ -69,31 +69,31 @@ def _edge_crossing(
     u, v = (axis + 1) % 3, (axis + 2) % 3
     half = 0.5 * step * pitch
     for c in range(3):
-        place[c], normal[c] = origin[c] + (cell[c] + 0.5) * pitch, 0.0
+        position[c], normal[c] = origin[c] + (cell[c] + 0.5) * pitch, 0.0
     normal[axis] = 1.0 if leaves else -1.0
-    place[axis] += half
+    position[axis] += half
     if not has[axis]:
         return
     count, ends = counts[axis], highs[axis] if leaves else lows[axis]
     end = _nearest_crossing(
-        count, ends, cell[v] * cells[u] + cell[u], place[axis], half * (1.0 + 1e-9)
+        count, ends, cell[v] * cells[u] + cell[u], position[axis], half * (1.0 + 1e-9)
     )
     if np.isnan(end):
         return
-    place[axis] = end
+    position[axis] = end
     # Slopes across the edge from the ends of neighbouring rays: their mean where both sides agree,
     # else the smaller, as the other is beyond an edge of the stock.
     for side in range(2):
         across, slope, sides = u if side == 0 else v, 0.0, 0
-        for way in range(-1, 2, 2):
-            beside = cell[across] + way
-            if not 0 <= beside < cells[across]:
+        for sense in range(-1, 2, 2):
+            neighbour = cell[across] + sense
+            if not 0 <= neighbour < cells[across]:
                 continue
-            ray = cell[v] * cells[u] + beside if side == 0 else beside * cells[u] + cell[u]
+            ray = cell[v] * cells[u] + neighbour if side == 0 else neighbour * cells[u] + cell[u]
             other = _nearest_crossing(count, ends, ray, end, REACH * pitch)
             if np.isnan(other):
                 continue
-            rise = (other - end) / (way * pitch)
+            rise = (other - end) / (sense * pitch)
             if sides == 0:
                 slope = rise
             elif abs(rise - slope) <= BEND:
@@ -180,11 +180,11 @@ def _dual_vertex(
     border.
 
     Least squares of the planes' distances (a quadratic error function), relative to the mean of the
-    crossings: sum n n^T x = sum n (n . (place - mean)), with CALM added on the diagonal (Tikhonov),
+    crossings: sum n n^T x = sum n (n . (position - mean)), with CALM added on the diagonal (Tikhonov),
     so that a flat or straight surface keeps its point at the mean. The point is held within its
     box.
     """
-    a, b, mean, place, normal, offset = work[0:3], work[3], work[4], work[5], work[6], work[7]
+    a, b, mean, position, normal, offset = work[0:3], work[3], work[4], work[5], work[6], work[7]
     a[:], b[:], mean[:] = 0.0, 0.0, 0.0
     begin, total = step // 2, 0
     # First round: mean of the crossings; second round: the normal equations about it.
@@ -221,17 +221,17 @@ def _dual_vertex(
                     pitch,
                     step,
                     has,
-                    place,
+                    position,
                     normal,
                 )
                 if again == 0:
                     total += 1
                     for c in range(3):
-                        mean[c] += place[c]
+                        mean[c] += position[c]
                     continue
                 away = 0.0
                 for c in range(3):
-                    away += normal[c] * (place[c] - mean[c])
+                    away += normal[c] * (position[c] - mean[c])
                 for c in range(3):
                     b[c] += normal[c] * away
                     for e in range(3):

@@ -19,7 +19,7 @@ overshoot a concave function. Nothing is sampled over time: the envelope leaves 
 
 Where the tool turns, D is concave in w at every t but F need not be: a tool that swings about its
 middle sweeps two lobes with a gap between them. There an entry is bisected where Newton overshoots,
-and what lies between both entries is taken away only where that is certain: between two places that
+and what lies between both entries is taken away only where that is certain: between two positions that
 are in the body at one time, since D is concave along the ray at that time. Bodies are taken smaller
 by SHRINK, so cuts err towards standing material; a gap that is nowhere deeper than 3 GAP may be
 taken with its lobes. mm, rad.
@@ -50,7 +50,7 @@ from trunnion.verify.kernels.stock.engagement import engagement_in_dexels
 # of the blank, the whole is one span: centre, direction of its middle, then radius and cosine of
 # half its angle (each three times, so that turning coordinates changes nothing); the radius is 0
 # for all others.
-TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, WAY_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = (
+TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, MOTION_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = (
     0,
     3,
     12,
@@ -72,7 +72,7 @@ RAY_COLUMNS = 22
 SHRINK = 1e-6
 """mm that bodies are made smaller by: a surface that was just cut to is not cut again by what only touches it."""
 MOST_GRAZED = 64
-"""Places that a rapid may be suspected at."""
+"""Positions that a rapid may be suspected at."""
 NOISE = 1e-7
 """mm: depths less apart are the same."""
 GAP = 2e-4
@@ -192,7 +192,7 @@ def _newton_entry(
     Newton's method on F from outside: F(w) + slope (w' - w) bounds F, so its root is not beyond the
     entry.
     """
-    way = 1.0 if end > w else -1.0
+    sense = 1.0 if end > w else -1.0
     before = w
     for step in range(100):
         f, slope, t = _swept_depth(arcs, first, last, limit, ray, w)
@@ -203,12 +203,12 @@ def _newton_entry(
         if f > NOISE or (f >= -NOISE and step > 0):
             return w, t
         # F no longer rises towards the end: concave, so it never becomes positive.
-        slope *= way
+        slope *= sense
         if slope <= 1e-12:
             return np.nan, 0.5
         before = w
-        w += way * max(-f / slope, NOISE)
-        if (end - w) * way < 0.0:
+        w += sense * max(-f / slope, NOISE)
+        if (end - w) * sense < 0.0:
             return np.nan, 0.5
     return np.nan, 0.5
 
@@ -238,42 +238,42 @@ def _max_depth_turning(
     high: float,
     enough: float,
 ) -> tuple[float, float]:
-    """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
+    """Return the largest depth (mm) between two positions of a ray over a span, and its position; attained,
     within 1e-5 mm, where the tool turns within SURE. One of at most `enough` need not be the largest.
 
     A tangent at w bounds F from above at w' by F(w) + slope (w' - w) + TWIST |w' - w|, the last for
     the bilinear term where the tool turns. So from the lower end on each tangent bounds how far on
     nothing can be deeper than what is known by more than SURE (Piyavskii, 1972, with slopes).
     """
-    best, place = _max_depth(arcs, first, last, limit, ray, low, high)
+    best, position = _max_depth(arcs, first, last, limit, ray, low, high)
     if ray[TWIST] == 0.0:
-        return best, place
+        return best, position
     w = low
     while w < high:
         f, slope, _t = _swept_depth(arcs, first, last, limit, ray, w)
         if f > best:
-            best, place = f, w
+            best, position = f, w
         steep = slope + ray[TWIST]
         if steep <= 0.0:
             break
         w += (max(best, enough) + SURE - f) / steep
-    return best, place
+    return best, position
 
 
 @njit(cache=True, nogil=True)
 def _max_depth(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float
 ) -> tuple[float, float]:
-    """Return the largest depth (mm) between two places of a ray over a span, and its place; attained,
+    """Return the largest depth (mm) between two positions of a ray over a span, and its position; attained,
     within 1e-5 mm where the tool keeps its axis, else perhaps one of several peaks.
 
     Cutting planes along w, as `_swept_depth` has them along t.
     """
     f0, s0, _t = _swept_depth(arcs, first, last, limit, ray, low)
     f1, s1, _t = _swept_depth(arcs, first, last, limit, ray, high)
-    best, place = (f0, low) if f0 >= f1 else (f1, high)
+    best, position = (f0, low) if f0 >= f1 else (f1, high)
     if s0 <= 0.0 or s1 >= 0.0:
-        return best, place
+        return best, position
     for step in range(60):
         w = (f1 - f0 + s0 * low - s1 * high) / (s0 - s1)
         if f0 + s0 * (w - low) - best <= 1e-5:
@@ -283,12 +283,12 @@ def _max_depth(
         w = min(max(w, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
         f, s, _t = _swept_depth(arcs, first, last, limit, ray, w)
         if f > best:
-            best, place = f, w
+            best, position = f, w
         if s > 0.0:
             low, f0, s0 = w, f, s
         else:
             high, f1, s1 = w, f, s
-    return best, place
+    return best, position
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -361,8 +361,8 @@ def _swept_box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
             a = span[FRAME0 + 6 + m]
             across, p, q = r * math.sqrt(max(1.0 - a * a, 0.0)), a * piece[Z_LOW], a * piece[Z_HIGH]
             box[m], box[3 + m] = (
-                span[WAY_BOX + m] + min(p, q) - across,
-                span[WAY_BOX + 3 + m] + max(p, q) + across,
+                span[MOTION_BOX + m] + min(p, q) - across,
+                span[MOTION_BOX + 3 + m] + max(p, q) + across,
             )
         return
     for m in range(3):
@@ -515,20 +515,20 @@ def _tridexel_cut_arc(
     r, radius = _disc_radius(arcs, first, last, limit, ray[2]), span[ARC_RADIUS]
     if r <= 0.0:
         return 0.0, True
-    # In the plane across the axis, the ray's place nearest to the centre, and how far beside it the ray passes.
+    # In the plane across the axis, the ray's position nearest to the centre, and how far beside it the ray passes.
     x, y = span[CENTRE] - u, span[CENTRE + 1] - v
     along = span[FRAME0 + 6] * x + span[FRAME0 + 7] * y
-    beside, middle = math.sqrt(max(x * x + y * y - along * along, 0.0)), span[CENTRE + 2]
+    lateral, middle = math.sqrt(max(x * x + y * y - along * along, 0.0)), span[CENTRE + 2]
     # The ray passes outside of the outer circle, or has no material within it.
-    if beside >= radius + r:
+    if lateral >= radius + r:
         return 0.0, True
-    half = math.sqrt((radius + r) ** 2 - beside * beside)
+    half = math.sqrt((radius + r) ** 2 - lateral * lateral)
     if _ray_misses(count, low, high, cell, max(bottom, middle - half), min(top, middle + half)):
         return 0.0, True
     n = 0
     for circle in (radius + r, radius - r):
-        if circle > beside:
-            half = math.sqrt(circle * circle - beside * beside)
+        if circle > lateral:
+            half = math.sqrt(circle * circle - lateral * lateral)
             n = _insert_sorted(ray, _insert_sorted(ray, n, middle - half), middle + half)
     for end in range(2):
         x, y, w = (
@@ -851,9 +851,9 @@ def _graze_candidates(
     pitch: float,
     box: Floats,
     fine: int,
-    places: Floats,
+    positions: Floats,
 ) -> None:
-    """List in places (r, 4), u, v, w and depth, where a body may be in material between the rays of a
+    """List in positions (r, 4), u, v, w and depth, where a body may be in material between the rays of a
     bundle, going by the material of the rays around.
 
     Within a suspicious cell fine x fine rays are tested, and the deepest of each quarter is kept.
@@ -864,7 +864,7 @@ def _graze_candidates(
     j0, j1 = _cell_range(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)
     # Behind what earlier spans have listed.
     listed = 0
-    while listed < len(places) and places[listed, 3] > 0.0:
+    while listed < len(positions) and positions[listed, 3] > 0.0:
         listed += 1
     best = np.zeros((4, 4))
     for j in range(j0, j1):
@@ -902,8 +902,8 @@ def _graze_candidates(
                             deep,
                         )
             for m in range(4):
-                if best[m, 3] > 0.0 and listed < len(places):
-                    places[listed] = best[m]
+                if best[m, 3] > 0.0 and listed < len(positions):
+                    positions[listed] = best[m]
                     listed += 1
 
 
@@ -937,9 +937,9 @@ def tridexel_cut_tile(
     resume: Ints,
     removed: Floats,
     depth: Floats,
-    place: Floats,
+    position: Floats,
     body: Floats,
-    way: Floats,
+    motion: Floats,
     rings: Floats,
     flute: Floats,
     circle: Floats,
@@ -959,12 +959,12 @@ def tridexel_cut_tile(
     cells.
 
     resume (6,): move, span, piece, row and column to begin with, and whether that move has been
-    looked at; changed. removed (n,) gets the length (mm) that is gone, depth (n,) and place (n, 3)
+    looked at; changed. removed (n,) gets the length (mm) that is gone, depth (n,) and position (n, 3)
     how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what doesn't
-    cut is. way (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute,
+    cut is. motion (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute,
     circle, probe_start (n + 1,), counted and seen: see `kernels/stock/engagement.py`; without probes
     nothing is looked at. fine: rays along each side of a cell where a rapid may go deeper than
-    `allowed` in between, 0 for none; grazed (r, 4) gets such places (u, v, w) and depths,
+    `allowed` in between, 0 for none; grazed (r, 4) gets such positions (u, v, w) and depths,
     `MOST_GRAZED` rows for each rapid in turn, depth 0 where there is none.
 
     Returns whether all is done: when rays have no room for one more interval, `resume` says where
@@ -984,14 +984,14 @@ def tridexel_cut_tile(
         rapids += rapid[n]
     for n in range(resume[0], last):
         rapids += rapid[n]
-        going_on = n == resume[0]
+        resumes = n == resume[0]
         p0, p1 = piece_start[tool[n]], piece_start[tool[n] + 1]
         # Feed move: engagement first, as the stock stood before; then every piece that cuts takes
         # its sweep away, span by span.
         if not rapid[n]:
             if (
                 probe_start[n + 1] > probe_start[n]
-                and not (going_on and resume[5] != 0)
+                and not (resumes and resume[5] != 0)
                 and _spans_meet(
                     span, span_start[n], span_start[n + 1], v_low - pitch, v_high + pitch
                 )
@@ -1006,12 +1006,12 @@ def tridexel_cut_tile(
                     pitch,
                     end_row - row,
                     columns,
-                    way[n, 0:3],
-                    way[n, 3:6],
-                    way[n, 6:9],
-                    way[n, 9:12],
-                    way[n, 12:15],
-                    way[n, 15],
+                    motion[n, 0:3],
+                    motion[n, 3:6],
+                    motion[n, 6:9],
+                    motion[n, 9:12],
+                    motion[n, 12:15],
+                    motion[n, 15],
                     rings[tool[n]],
                     flute[tool[n]],
                     circle,
@@ -1021,9 +1021,9 @@ def tridexel_cut_tile(
                     seen,
                 )
             for s in range(
-                max(resume[1], span_start[n]) if going_on else span_start[n], span_start[n + 1]
+                max(resume[1], span_start[n]) if resumes else span_start[n], span_start[n + 1]
             ):
-                going_on = going_on and s == resume[1]
+                resumes = resumes and s == resume[1]
                 if (
                     span[s, CUT_BOX + 1] > v_high
                     or span[s, CUT_BOX + 4] < v_low
@@ -1032,8 +1032,8 @@ def tridexel_cut_tile(
                 ):
                     continue
                 ray[TWIST] = _ray_turn(span[s])
-                for p in range(max(resume[2], p0) if going_on else p0, p1):
-                    going_on = going_on and p == resume[2]
+                for p in range(max(resume[2], p0) if resumes else p0, p1):
+                    resumes = resumes and p == resume[2]
                     if piece[p, KIND] != 0.0:
                         break
                     _swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
@@ -1043,10 +1043,10 @@ def tridexel_cut_tile(
                     limit = _flute_limit(piece, p, p1)
                     i0, i1 = _cell_range(box[0], box[3], origin[0], pitch, 0, columns)
                     j0, j1 = _cell_range(box[1], box[4], origin[1], pitch, row, end_row)
-                    for j in range(max(j0, resume[3]) if going_on else j0, j1):
+                    for j in range(max(j0, resume[3]) if resumes else j0, j1):
                         v = origin[1] + (j + 0.5) * pitch
                         for i in range(
-                            max(i0, resume[4]) if going_on and j == resume[3] else i0, i1
+                            max(i0, resume[4]) if resumes and j == resume[3] else i0, i1
                         ):
                             cell = j * columns + i
                             if _ray_misses(count, low, high, cell, box[2], box[5]):
@@ -1122,7 +1122,12 @@ def tridexel_cut_tile(
                                 arcs, first, end, np.inf, ray, a, b, best
                             )
                             if deepest > best and cuts:
-                                depth[n], place[n, 0], place[n, 1], place[n, 2] = deepest, u, v, w
+                                depth[n], position[n, 0], position[n, 1], position[n, 2] = (
+                                    deepest,
+                                    u,
+                                    v,
+                                    w,
+                                )
                             elif deepest > best:
                                 body[n] = deepest
                 # Rapids that miss the rays may still enter between them.

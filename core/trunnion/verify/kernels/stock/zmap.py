@@ -193,7 +193,7 @@ def _zmap_cut_row(
     inverse: 1 / squared length, 0 for a standing cutter; z of the tip; floor: no column goes below
     it; upper: a higher column is left and counted.
     """
-    removed, stands = 0.0, 0
+    removed, uncut = 0.0, 0
     inner, limit, bottom = radius - corner, radius * radius, max(z, floor)
     flat = inner * inner
     for i in range(len(row)):
@@ -212,8 +212,8 @@ def _zmap_cut_row(
                         z + (corner - math.sqrt(max(corner * corner - out * out, 0.0))), floor
                     )
                 r, s = _lower(row, i, cut, upper)
-                removed, stands = removed + r, stands + s
-    return removed, stands
+                removed, uncut = removed + r, uncut + s
+    return removed, uncut
 
 
 @njit(cache=True, nogil=True)
@@ -234,7 +234,7 @@ def _zmap_cut_row_formed(
 ) -> tuple[float, int]:
     """Lower the cells of a row under a cutter of any form on a level line; arguments and results as
     for `_zmap_cut_row`."""
-    removed, stands = 0.0, 0
+    removed, uncut = 0.0, 0
     limit, bottom = profile[RADIUS] * profile[RADIUS], max(z, floor)
     for i in range(len(row)):
         h = row[i]
@@ -246,8 +246,8 @@ def _zmap_cut_row_formed(
             if d < limit:
                 cut = max(z + profile_height(d, profile, arcs, pieces), floor)
                 r, s = _lower(row, i, cut, upper)
-                removed, stands = removed + r, stands + s
-    return removed, stands
+                removed, uncut = removed + r, uncut + s
+    return removed, uncut
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "nsz", "contract", "nnan"})
@@ -270,7 +270,7 @@ def _zmap_cut_row_ball(
     Most cells ahead of a ball get lower at every move: computing them all is faster than a
     branch. Reassociation moves a height by a few units in the last place.
     """
-    removed, stands = 0.0, 0.0
+    removed, uncut = 0.0, 0.0
     limit = radius * radius
     for i in range(len(row)):
         h = row[i]
@@ -285,10 +285,10 @@ def _zmap_cut_row_ball(
         inside = (gap > 0.0) & (cut < h)
         new = cut if inside & (h <= upper) else h
         # Counted in floats: a whole number beside them would keep the loop from being done several cells at a time.
-        stands += 1.0 if inside & (h > upper) else 0.0
+        uncut += 1.0 if inside & (h > upper) else 0.0
         removed += h - new
         row[i] = new
-    return removed, int(stands)
+    return removed, int(uncut)
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -368,9 +368,9 @@ def _zmap_cut_line(
     inv_dy = 1.0 / dy if abs(dy) > STILL else 0.0
     slant = dy / dx if abs(dx) > STILL else 0.0
     level = radius - corner if plain and joined else 0.0
-    removed, stands = 0.0, 0
-    columns, cell, left = top.shape[1], 1.0 / pitch, origin[0] + 0.5 * pitch
-    x = left - x0
+    removed, uncut = 0.0, 0
+    columns, cell, first_x = top.shape[1], 1.0 / pitch, origin[0] + 0.5 * pitch
+    x = first_x - x0
     for j in range(
         first_cell(min(y0, y1) - radius, origin[1], pitch),
         last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1,
@@ -391,8 +391,8 @@ def _zmap_cut_line(
             continue
         # One cell more on each side than the range holds: the row functions decide by distance.
         a, b = (
-            max(int(math.floor((low - left) * cell)), 0),
-            min(int(math.ceil((high - left) * cell)), columns - 1),
+            max(int(math.floor((low - first_x) * cell)), 0),
+            min(int(math.ceil((high - first_x) * cell)), columns - 1),
         )
         # The cells from c to d lie under the level end at the start and are done; c > d: none.
         c, d = b + 1, b
@@ -400,8 +400,8 @@ def _zmap_cut_line(
         if gap > SHRINK:
             half = math.sqrt(gap) - SHRINK
             c, d = (
-                int(math.ceil((x0 - half - left) * cell)),
-                int(math.floor((x0 + half - left) * cell)),
+                int(math.ceil((x0 - half - first_x) * cell)),
+                int(math.floor((x0 + half - first_x) * cell)),
             )
             if c > d:
                 c, d = b + 1, b
@@ -422,8 +422,8 @@ def _zmap_cut_line(
                 r, s = _zmap_cut_row_formed(
                     row, px, py, pitch, dx, dy, inverse, z, floor, upper, profile, arcs, pieces
                 )
-            removed, stands = removed + r, stands + s
-    return removed, stands
+            removed, uncut = removed + r, uncut + s
+    return removed, uncut
 
 
 @njit(cache=True, nogil=True)
@@ -431,7 +431,7 @@ def _zmap_cut_arc_row(
     row: Floats,
     first: int,
     last: int,
-    left: float,
+    first_x: float,
     y: float,
     pitch: float,
     move: Floats,
@@ -444,13 +444,13 @@ def _zmap_cut_arc_row(
 ) -> tuple[float, int]:
     """Lower cells `first` to `last` of a row under a level arc; results as for `_zmap_cut_row`. left:
     x of the row's first cell centre, y of the row."""
-    removed, stands = 0.0, 0
+    removed, uncut = 0.0, 0
     corner, inner, limit = profile[CORNER], profile[RADIUS] - profile[CORNER], profile[RADIUS] ** 2
     bottom = max(z, floor)
     for i in range(first, last + 1):
         h = row[i]
         if h > bottom:
-            d = _arc_distance_squared(left + i * pitch, y, move)
+            d = _arc_distance_squared(first_x + i * pitch, y, move)
             if d < limit:
                 # g over the squared distance to the arc: quarter circle of a plain cutter, else its bodies.
                 if profile[PLAIN] != 0.0:
@@ -458,8 +458,8 @@ def _zmap_cut_arc_row(
                 else:
                     cut = max(z + profile_height(d, profile, arcs, pieces), floor)
                 r, s = _lower(row, i, cut, upper)
-                removed, stands = removed + r, stands + s
-    return removed, stands
+                removed, uncut = removed + r, uncut + s
+    return removed, uncut
 
 
 @njit(cache=True, nogil=True)
@@ -483,31 +483,31 @@ def _zmap_cut_arc(
     """
     radius = profile[RADIUS]
     x0, y0, x1, y1 = _swept_box(move, radius)
-    left = origin[0] + 0.5 * pitch
+    first_x = origin[0] + 0.5 * pitch
     outer, hollow = move[ARC_RADIUS] + radius, max(move[ARC_RADIUS] - radius, 0.0)
     i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
-    removed, stands = 0.0, 0
+    removed, uncut = 0.0, 0
     for j in range(
         first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1
     ):
         y = origin[1] + (j + 0.5) * pitch
         py = y - move[CY]
         half = math.sqrt(max(outer * outer - py * py, 0.0))
-        a = max(i0, int(math.floor((move[CX] - half - left) / pitch)))
-        b = min(i1, int(math.ceil((move[CX] + half - left) / pitch)))
+        a = max(i0, int(math.floor((move[CX] - half - first_x) / pitch)))
+        b = min(i1, int(math.ceil((move[CX] + half - first_x) / pitch)))
         gap = hollow * hollow - py * py
         if gap > SHRINK:
             half = math.sqrt(gap) - SHRINK
             c, d = (
-                int(math.ceil((move[CX] - half - left) / pitch)),
-                int(math.floor((move[CX] + half - left) / pitch)),
+                int(math.ceil((move[CX] - half - first_x) / pitch)),
+                int(math.floor((move[CX] + half - first_x) / pitch)),
             )
             if c <= d:
                 r, s = _zmap_cut_arc_row(
                     top[j],
                     a,
                     min(b, c - 1),
-                    left,
+                    first_x,
                     y,
                     pitch,
                     move,
@@ -518,13 +518,13 @@ def _zmap_cut_arc(
                     arcs,
                     pieces,
                 )
-                removed, stands = removed + r, stands + s
+                removed, uncut = removed + r, uncut + s
                 a = max(a, d + 1)
         r, s = _zmap_cut_arc_row(
-            top[j], a, b, left, y, pitch, move, z, floor, upper, profile, arcs, pieces
+            top[j], a, b, first_x, y, pitch, move, z, floor, upper, profile, arcs, pieces
         )
-        removed, stands = removed + r, stands + s
-    return removed, stands
+        removed, uncut = removed + r, uncut + s
+    return removed, uncut
 
 
 @njit(cache=True, nogil=True)
@@ -718,8 +718,8 @@ def _zmap_cut_slope(
     done_behind = joined and z1 >= z0
     # No column at or below the lowest tip is lowered; a bound from below that saves most of the
     # work.
-    lowest, removed, stands = max(min(z0, z1), floor), 0.0, 0
-    left = origin[0] + 0.5 * pitch
+    lowest, removed, uncut = max(min(z0, z1), floor), 0.0, 0
+    first_x = origin[0] + 0.5 * pitch
     for j in range(
         first_cell(min(y0, y1) - radius, origin[1], pitch),
         last_cell(max(y0, y1) + radius, origin[1], pitch, top.shape[0]) + 1,
@@ -729,14 +729,14 @@ def _zmap_cut_slope(
         if low > high:
             continue
         py = y - y0
-        first = max(int(math.floor((low - left) / pitch)), 0)
-        row = top[j, first : min(int(math.ceil((high - left) / pitch)), top.shape[1] - 1) + 1]
+        first = max(int(math.floor((low - first_x) / pitch)), 0)
+        row = top[j, first : min(int(math.ceil((high - first_x) / pitch)), top.shape[1] - 1) + 1]
         # Invariant: no column of the row ends below the envelope of the cutter along the line.
         for i in range(len(row)):
             h = row[i]
             if h <= lowest:
                 continue
-            px = left + (first + i) * pitch - x0
+            px = first_x + (first + i) * pitch - x0
             along, across = px * ux + py * uy, px * uy - py * ux
             if done_behind and along < 0.0:
                 continue
@@ -752,8 +752,8 @@ def _zmap_cut_slope(
                     floor,
                 )
             r, s = _lower(row, i, cut, upper)
-            removed, stands = removed + r, stands + s
-    return removed, stands
+            removed, uncut = removed + r, uncut + s
+    return removed, uncut
 
 
 @njit(cache=True, nogil=True)
@@ -778,7 +778,7 @@ def _zmap_cut_helix(
     arm, sweep, z0, z1 = move[ARC_RADIUS], abs(move[SWEEP]), move[Z_START], move[Z_END]
     turn = 1.0 if move[SWEEP] > 0.0 else -1.0
     turns = int(math.floor(sweep / math.tau)) + 1
-    lowest, removed, stands = max(min(z0, z1), floor), 0.0, 0
+    lowest, removed, uncut = max(min(z0, z1), floor), 0.0, 0
     i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
     for j in range(
         first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1
@@ -813,8 +813,8 @@ def _zmap_cut_helix(
                         z = min(z, z0 + (b if z1 < z0 else a) / sweep * (z1 - z0))
             cut = max(z, floor)
             r, s = _lower(top[j], i, cut, z + opening)
-            removed, stands = removed + r, stands + s
-    return removed, stands
+            removed, uncut = removed + r, uncut + s
+    return removed, uncut
 
 
 @njit(cache=True, nogil=True)
@@ -883,12 +883,12 @@ def zmap_cut_move(
             arcs,
             pieces,
         )
-    removed, stands, level = 0.0, 0, profile[RADIUS] - profile[CORNER]
+    removed, uncut, level = 0.0, 0, profile[RADIUS] - profile[CORNER]
     if profile[PLAIN] != 0.0 and level > 0.0 and move[ARC_RADIUS] > STILL:
         # The rounded rim then finds little left to do under the level part.
-        removed, stands = _zmap_cut_helix(top, origin, pitch, floor, move, level, profile[OPEN])
+        removed, uncut = _zmap_cut_helix(top, origin, pitch, floor, move, level, profile[OPEN])
         if profile[CORNER] == 0.0:
-            return removed, stands
+            return removed, uncut
     # Sagitta of a chord over the angle `step`: arm step^2 / 8 = chord.
     step = math.sqrt(8.0 * chord / max(move[ARC_RADIUS], chord))
     count = max(1, int(math.ceil(abs(move[SWEEP]) / step)))
@@ -919,9 +919,9 @@ def zmap_cut_move(
                 arcs,
                 pieces,
             )
-            removed, stands = removed + r, stands + s
+            removed, uncut = removed + r, uncut + s
         px, py, pz = qx, qy, qz
-    return removed, stands
+    return removed, uncut
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -1072,13 +1072,13 @@ def _boundary_cells(
             if d >= reach * reach:
                 continue
             # The cell and its eight neighbours: does any column stand above the sweep?
-            stands = False
+            is_higher = False
             for b in range(max(j - 1, 0), min(j + 1, top.shape[0] - 1) + 1):
                 for a in range(max(i - 1, 0), min(i + 1, top.shape[1] - 1) + 1):
-                    stands = stands or top[b, a] > z
+                    is_higher = is_higher or top[b, a] > z
             if count < len(rims):
                 cell = j * top.shape[1] + i
-                rims[count] = cell if stands else -1 - cell
+                rims[count] = cell if is_higher else -1 - cell
                 count += 1
     return count
 
@@ -1285,7 +1285,7 @@ def zmap_cut_loop(
                 counted,
                 spans,
             )
-            took, standing = zmap_cut_move(
+            took, uncut = zmap_cut_move(
                 top,
                 origin,
                 pitch,
@@ -1298,7 +1298,7 @@ def zmap_cut_loop(
                 chord,
             )
             removed[n] += took
-            if standing > 0:
+            if uncut > 0:
                 return n, 2
         # A move straight up leaves through the column that its own cut has opened.
         straight = move[KIND] == 0.0 and move[X0] == move[X1] and move[Y0] == move[Y1]
