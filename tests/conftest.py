@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -24,3 +26,24 @@ def sample_panel() -> Path:
     from samples import two_pockets_and_a_rib
 
     return Path(two_pockets_and_a_rib())
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _parts_are_read_by_a_warm_process() -> Iterator[None]:
+    """Read part files in processes forked off one that has loaded the CAD kernel, which takes most of the time of reading."""
+    from trunnion.part.read import child
+    from warm import CAN_FORK, READERS
+
+    with pytest.MonkeyPatch.context() as patch:
+        if CAN_FORK:
+            patch.setattr(child, "subprocess", READERS)
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _cold(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the mark `cold`, read part files as the program does."""
+    if request.node.get_closest_marker("cold"):
+        from trunnion.part.read import child
+
+        monkeypatch.setattr(child, "subprocess", subprocess)

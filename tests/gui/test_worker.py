@@ -11,6 +11,8 @@ from trunnion_gui.worker.shared_memory import packed, unpacked
 from trunnion_gui.worker.steps import TITLES
 from trunnion_gui.worker.worker import GRACE_S, WRITING_GRACE_S
 
+pytestmark = pytest.mark.cold
+
 
 def opened(make_window, factory, part_file, idle):
     window = make_window(f"fake_engine:{factory}")
