@@ -11,6 +11,48 @@ import pytest
 
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
+LONGEST_FIRST = (
+    "test_cli_verify",
+    "test_strategies",
+    "test_dexels",
+    "test_drop_cutter",
+    "test_blank",
+    "test_whole_line",
+    "test_blank_line",
+    "test_surface_ridges",
+    "test_own_family",
+    "test_foreseen_load",
+    "test_window",
+    "test_viewport",
+    "test_unsaved",
+    "test_planners",
+    "test_worker",
+    "test_contact",
+    "test_verify_zmap",
+    "test_suitability",
+    "test_recognize_panel_parts",
+    "test_plan_surface_route",
+    "test_deviation",
+    "test_playback",
+    "test_form",
+    "test_views",
+    "test_plan_lands",
+    "test_looks",
+    "test_patches",
+    "test_planted_faults_motion",
+    "test_verify_contact",
+    "test_facets",
+    "test_leaning",
+)
+"""Files that take longer than ten seconds, so that none is left to one of two processes at the end. The first compile kernels that the
+other one needs later, and not at the same time."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files of `LONGEST_FIRST`; all others follow as they came."""
+    rank = {name: n for n, name in enumerate(LONGEST_FIRST)}
+    items.sort(key=lambda item: rank.get(item.path.stem, len(rank)))
+
 
 @pytest.fixture(scope="session")
 def sample_part() -> Path:

@@ -35,6 +35,7 @@ def settings_of_their_own(tmp_path, monkeypatch):
 @pytest.fixture(autouse=True)
 def tidy(qapp):
     """Collect garbage in the window's thread only, as the program does, and all of a test's at its end."""
+    import trunnion_gui.window  # noqa: F401 - what is imported before is not looked through for garbage
     from trunnion_gui.gc_control import GcControl
 
     made = GcControl()
