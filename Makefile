@@ -4,6 +4,8 @@ BIN := .venv/bin
 OUT ?= out/demo
 export QT_QPA_PLATFORM ?= offscreen
 export PYTHONHASHSEED ?= 0
+# Tests start processes by the hundred; without compiled files each would compile all modules anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: packages setup demo test test-long bench screenshots run check lint docs clean
 
@@ -32,7 +34,7 @@ lint: setup
 
 test: setup lint
 	sh installer/rs274.sh
-	$(BIN)/python -m pytest -q -m "not long and not display" -n 2 --dist loadfile
+	$(BIN)/python -m pytest -q -m "not long and not display" -n 2 --dist loadfile --no-loadscope-reorder
 
 test-long: setup
 	sh installer/debian.sh --display

@@ -3,11 +3,55 @@
 from __future__ import annotations
 
 import os
+import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+LONGEST_FIRST = (
+    "test_cli_verify",
+    "test_strategies",
+    "test_dexels",
+    "test_drop_cutter",
+    "test_blank",
+    "test_whole_line",
+    "test_blank_line",
+    "test_surface_ridges",
+    "test_own_family",
+    "test_foreseen_load",
+    "test_window",
+    "test_viewport",
+    "test_unsaved",
+    "test_planners",
+    "test_worker",
+    "test_contact",
+    "test_verify_zmap",
+    "test_suitability",
+    "test_recognize_panel_parts",
+    "test_plan_surface_route",
+    "test_deviation",
+    "test_playback",
+    "test_form",
+    "test_views",
+    "test_plan_lands",
+    "test_looks",
+    "test_patches",
+    "test_planted_faults_motion",
+    "test_verify_contact",
+    "test_facets",
+    "test_leaning",
+)
+"""Files that take longer than ten seconds, so that none is left to one of two processes at the end. The first compile kernels that the
+other one needs later, and not at the same time."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files of `LONGEST_FIRST`; all others follow as they came."""
+    rank = {name: n for n, name in enumerate(LONGEST_FIRST)}
+    items.sort(key=lambda item: rank.get(item.path.stem, len(rank)))
 
 
 @pytest.fixture(scope="session")
@@ -24,3 +68,24 @@ def sample_panel() -> Path:
     from samples import two_pockets_and_a_rib
 
     return Path(two_pockets_and_a_rib())
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _parts_are_read_by_a_warm_process() -> Iterator[None]:
+    """Read part files in processes forked off one that has loaded the CAD kernel, which takes most of the time of reading."""
+    from trunnion.part.read import child
+    from warm import CAN_FORK, READERS
+
+    with pytest.MonkeyPatch.context() as patch:
+        if CAN_FORK:
+            patch.setattr(child, "subprocess", READERS)
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _cold(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the mark `cold`, read part files as the program does."""
+    if request.node.get_closest_marker("cold"):
+        from trunnion.part.read import child
+
+        monkeypatch.setattr(child, "subprocess", subprocess)

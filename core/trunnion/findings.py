@@ -104,14 +104,14 @@ class Finding:
 
     def as_dict(self) -> dict[str, object]:
         """Return the finding as the JSON that other programs rely on."""
-        told: dict[str, object] = {
+        entry: dict[str, object] = {
             "severity": self.severity.value,
             "code": self.code,
             "text": self.text,
             "where": list(self.where),
             "remedy": self.remedy,
         }
-        return told if self.fix is None else {**told, "fix": self.fix.as_dict()}
+        return entry if self.fix is None else {**entry, "fix": self.fix.as_dict()}
 
     def __str__(self) -> str:
         where = f" ({self.location})" if self.where else ""

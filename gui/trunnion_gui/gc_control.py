@@ -16,6 +16,8 @@ class GcControl(QObject):
     def __init__(self) -> None:
         super().__init__()
         gc.disable()
+        # What was imported stays: to look through it again takes most of the time of a full collection.
+        gc.freeze()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.look)
         self._timer.start(OFTEN)
@@ -30,4 +32,5 @@ class GcControl(QObject):
     def stop(self) -> None:
         """Leave it to the interpreter again."""
         self._timer.stop()
+        gc.unfreeze()
         gc.enable()

@@ -6,11 +6,24 @@ import gc
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from warm import CAN_FORK, WARM
+
 sys.path.insert(0, str(Path(__file__).parent))
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+
+@pytest.fixture(autouse=True)
+def workers_start_warm(request, monkeypatch):
+    """Start each window's computing process from a warm one; with the mark `cold` it starts as the program starts it."""
+    if CAN_FORK and request.node.get_closest_marker("cold") is None:
+        monkeypatch.setattr(
+            "trunnion_gui.worker.worker.multiprocessing",
+            SimpleNamespace(get_context=lambda _: WARM),
+        )
 
 
 @pytest.fixture(autouse=True)
@@ -22,6 +35,7 @@ def settings_of_their_own(tmp_path, monkeypatch):
 @pytest.fixture(autouse=True)
 def tidy(qapp):
     """Collect garbage in the window's thread only, as the program does, and all of a test's at its end."""
+    import trunnion_gui.window  # noqa: F401 - what is imported before is not looked through for garbage
     from trunnion_gui.gc_control import GcControl
 
     made = GcControl()

@@ -11,6 +11,7 @@ from own_packages import with_own_packages
 from trunnion_gui.look.colours import motions, rgb
 from turned_discs import turned_disc
 
+pytestmark = pytest.mark.cold
 BEVEL, SLOT = "disc_bevel-01", "disc_slot-01"
 
 

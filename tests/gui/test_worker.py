@@ -9,7 +9,9 @@ import pytest
 
 from trunnion_gui.worker.shared_memory import packed, unpacked
 from trunnion_gui.worker.steps import TITLES
-from trunnion_gui.worker.worker import GRACE_S, WRITING_GRACE_S
+from trunnion_gui.worker.worker import GRACE_S, WRITING_GRACE_S, Worker
+
+pytestmark = pytest.mark.cold
 
 
 def opened(make_window, factory, part_file, idle):
@@ -201,3 +203,13 @@ def test_arrays_arrive_as_they_were_sent(rows):
     assert bool(parcel.block) == (rows > 1000)
     assert back["name"] == "tray"
     assert np.array_equal(back["points"], array) and not back["points"].flags.writeable
+
+
+def test_a_cancel_ends_with_the_worker_that_was_asked(qtbot):
+    from shiboken6 import delete
+
+    worker = Worker("fake_engine:FakeEngine")
+    worker.cancel(worker.send("settings"))
+    delete(worker)
+    qtbot.wait(int(GRACE_S * 1000) + 200)  # what is raised meanwhile fails the test
+    worker._end()

@@ -163,7 +163,10 @@ def strips(draw):
         )
     lean = draw(st.sampled_from([0.0, 0.0, 0.05]))
     left, right = TrimEdge(low, u0, low + lean, u1), TrimEdge(high, u0, high - lean, u1)
-    return strip_row(guide, profile, u0, u1, left, right)
+    row = strip_row(guide, profile, u0, u1, left, right)
+    # As the rows of a part's surfaces are: the kernels are not compiled for another kind of array.
+    row.setflags(write=False)
+    return row
 
 
 @st.composite

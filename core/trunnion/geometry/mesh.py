@@ -5,9 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from trunnion.geometry.arrays import Floats, Ints, floats, ints
 
@@ -67,6 +64,11 @@ def open_edges(triangles: Ints) -> int:
 
 def welded(mesh: Mesh, within: float) -> tuple[Floats, Ints]:
     """Return points (v, 3) and triangles (t, 3) of a mesh with points nearer than `within` mm made one; what is flat then is left out."""
+    # Imported late: every window and every process that computes imports this module at its start, and these take half a second.
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     pairs = cKDTree(mesh.points).query_pairs(within, output_type="ndarray")
     links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(mesh.points),) * 2)
     n, label = connected_components(links, directed=False)

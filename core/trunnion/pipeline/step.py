@@ -39,5 +39,7 @@ class Step:
     def key(self, session: Session, context: Context) -> str:
         """Return the digest of everything the step would be given now."""
         used = self.settings() if self.uses is None else self.uses(session)
-        chosen: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
-        return digest(self.name, self.version, chosen, self.reads(session, context), *session.cuts)
+        settings: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
+        return digest(
+            self.name, self.version, settings, self.reads(session, context), *session.cuts
+        )

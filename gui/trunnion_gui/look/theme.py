@@ -114,10 +114,13 @@ def sheet(theme: Theme) -> str:
 
 
 def apply(theme: Theme) -> None:
-    """Give the whole program the look of a theme."""
+    """Give the whole program the look of a theme; nothing is drawn anew when it has that already."""
     app = QApplication.instance()
     assert isinstance(app, QApplication)
     icons.use_theme(theme)
+    wanted = sheet(theme)
+    if app.styleSheet() == wanted:
+        return
     palette = QPalette()
     roles = QPalette.ColorRole
     for role, colour in (
@@ -139,4 +142,4 @@ def apply(theme: Theme) -> None:
         palette.setColor(QPalette.ColorGroup.Disabled, role, QColor(theme.muted))
     app.setStyle("Fusion")
     app.setPalette(palette)
-    app.setStyleSheet(sheet(theme))
+    app.setStyleSheet(wanted)

@@ -180,7 +180,7 @@ class Worker(QObject):
             return
         self._cancelled.value = max(self._cancelled.value, number)
         grace = WRITING_GRACE_S if is_writing(request.command) else GRACE_S
-        QTimer.singleShot(int(grace * 1000), lambda: self._insist(number))
+        QTimer.singleShot(int(grace * 1000), self, lambda: self._insist(number))
 
     def forget(self, number: int) -> None:
         """Await no reply to a request any more: it is dropped when it comes."""

@@ -39,6 +39,7 @@ def test_a_file_in_another_unit_is_read_in_mm_and_its_unit_told(suffix: str, uni
     assert part.volume == pytest.approx(24000.0, rel=1e-6)
 
 
+@pytest.mark.cold
 def test_a_gzipped_file_is_read_like_the_plain_one() -> None:
     assert read_part(samples.written(samples.box_shape(), "stpz")).volume == pytest.approx(24000.0)
 
@@ -49,6 +50,7 @@ def test_an_iges_file_named_step_is_read_by_its_content(tmp_path: Path) -> None:
     assert read_part(file).n_faces == 23
 
 
+@pytest.mark.cold
 def test_bytes_are_read_as_the_file_they_came_from() -> None:
     file = samples.block_with_pocket()
     part = read_part_bytes(file.read_bytes(), "block_with_pocket", ".step")
@@ -127,16 +129,19 @@ def test_a_file_without_read_permission_is_refused(tmp_path: Path) -> None:
         read_part(file)
 
 
+@pytest.mark.cold
 def test_reading_that_takes_too_long_is_stopped() -> None:
     with pytest.raises(BadInput, match=r"longer than 0\.01 s and was stopped"):
         read_part(samples.block_with_pocket(), limits=ReadLimits(seconds=0.01))
 
 
+@pytest.mark.cold
 def test_reading_that_needs_too_much_memory_says_so() -> None:
     with pytest.raises((OutOfMemory, BadInput), match="memory|failed"):
         read_part(samples.block_with_pocket(), limits=ReadLimits(memory=200))
 
 
+@pytest.mark.cold
 def test_reading_can_be_cancelled() -> None:
     asked = []
     with pytest.raises(Cancelled):

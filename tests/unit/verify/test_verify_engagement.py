@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from trunnion.geometry.arrays import floats
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Box
 from trunnion.verify.kernels.stock.engagement import engagement_in_zmap
@@ -41,7 +42,7 @@ def seen(tool, heights, start, end, bands=1):
         tally = Tally.empty(int(probes.start[-1]))
         engagement_in_zmap(
             heights[a:b],
-            np.array([0.0, a * PITCH]),
+            floats((0.0, a * PITCH), (2,), "origin"),
             PITCH,
             0.0,
             moves.row[1],

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from trunnion.geometry.arrays import floats
 from trunnion.verify.cutter import bodies_of, lowest_height
 from trunnion.verify.kernels.body import KIND
 from trunnion.verify.kernels.stock import zmap as kernel
@@ -18,6 +19,8 @@ from verify_tools import FORMS, bull, flat, program_section
 
 PITCH, TOP = 0.5, 20.0
 CHORD = 2e-3
+ORIGIN = floats((0.0, 0.0), (2,), "origin")
+"""Read-only, as a stock's is: the kernels are not compiled for another kind of array."""
 PLAIN = {"flat": flat(10.0)(), "bull": bull(10.0, 2.0)(), "ball": bull(10.0, 5.0)()}
 
 
@@ -32,7 +35,7 @@ def cut(tool, stops, *, joined=True, floor=0.0, size=(60, 80), top=TOP):
         done.append(
             kernel.zmap_cut_move(
                 heights,
-                np.zeros(2),
+                ORIGIN,
                 PITCH,
                 floor,
                 moves.row[k],
@@ -193,7 +196,7 @@ def test_a_helix_of_a_flat_cutter_is_exact(sweep, rise, clockwise):
     heights = np.full((60, 80), TOP)
     took, _ = kernel.zmap_cut_move(
         heights,
-        np.zeros(2),
+        ORIGIN,
         PITCH,
         0.0,
         row,

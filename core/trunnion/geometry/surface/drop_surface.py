@@ -103,7 +103,7 @@ class DropSurface:
         n = len(points)
         out, facet, contact = np.empty(n), np.empty(n, np.int64), np.empty((n, 3))
         points, lifts = np.ascontiguousarray(points, dtype=np.float64), self._lifted(pieces)
-        floor = np.ascontiguousarray(np.broadcast_to(np.asarray(lowest, dtype=np.float64), (n,)))
+        floor = np.full(n, lowest, dtype=np.float64)
         for first in range(0, n, CHUNK):
             progress.at(first / n, "Dropping the cutter")
             kernel.drop_cutter_loop(

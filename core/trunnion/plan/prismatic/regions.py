@@ -317,8 +317,8 @@ class SetupSpace:
 
     def _above_foot(self, feature: Feature, top: float, foot: float) -> Band:
         """Return the free space around a pocket over the fillets at its foot: what bounds it where its rim is lower than they are high."""
-        z = min(foot + tolerance.OFF_PLANE, top - tolerance.BESIDE_PLANE)
-        free = self.around().minus(self.part_above(z, self._over(feature)))
+        z = min(foot + tolerance.OFF_PLANE, top - tolerance.OFF_PLANE)
+        free = self.around().minus(self.material_over(z, self._over(feature)))
         inside = free.intersect(self.silhouette()) if feature.kind == "open_pocket" else free
         return Band(top=top, bottom=foot, wanted=inside, boundary=free)
 

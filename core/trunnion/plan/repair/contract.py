@@ -45,14 +45,14 @@ FixRule = Callable[[ProcessTree, Fix, RepairJob], ProcessTree | None]
 
 def applied(process: ProcessTree, fix: Fix, job: RepairJob) -> ProcessTree | None:
     """Return the process with a fix, its tools numbered anew; None where the fix changes nothing. What a person set by hand stays."""
-    if fix.kind not in registry.names(FIXES) or _is_by_hand(process, fix.operation):
+    if fix.kind not in registry.names(FIXES) or _is_manual(process, fix.operation):
         return None
     rule: FixRule = registry.get(FIXES, fix.kind)
     changed = rule(process, fix, job)
     return None if changed is None else numbered(changed)
 
 
-def _is_by_hand(process: ProcessTree, id: str) -> bool:
+def _is_manual(process: ProcessTree, id: str) -> bool:
     return any(o.by_hand for o in process.operations if o.id == id)
 
 

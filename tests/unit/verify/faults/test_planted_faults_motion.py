@@ -61,34 +61,39 @@ class Fault:
     turning: bool
 
 
-def planned():
-    """Return the faults and the sections that commit them."""
-    faults, sections = [], []
-    for form, tool in SMALL.items():
-        for kind, motions in AXES.items():
-            for motion, axes in motions.items():
-                if (form, kind, motion) == ("taper", "wall", "upright"):
-                    continue  # Its flank leans out: upright it meets the wall's edge first.
-                for name, depth in DEPTHS.items():
-                    poses = touching(tool, kind, axes, depth)
-                    faults.append(
-                        Fault(
-                            f"{form} {kind} {motion} {name}",
-                            kind,
-                            plain(tool, kind, poses),
-                            motion == "turning",
-                        )
-                    )
-                    sections.append(section_through(tool, faults[-1].operation, poses))
-    for kind, touch in (("fillet", in_fillet), ("edge", on_edge)):
-        for motion, axes in AXES["wall"].items():
-            for name, depth in DEPTHS.items():
-                poses = touch(axes, depth)
-                faults.append(
-                    Fault(f"ball {kind} {motion} {name}", kind, depth, motion == "turning")
-                )
-                sections.append(section_through(BALL, faults[-1].operation, poses))
-    return faults, sections
+def named():
+    """Return the operations of the faults, each with the cutter (None: the ball in a fillet or on an edge), kind of face, motion, depth."""
+    flat = [
+        (f"{form} {kind} {motion} {name}", (tool, kind, motion, name))
+        for form, tool in SMALL.items()
+        for kind, motions in AXES.items()
+        for motion in motions
+        # The flank of a taper leans out: upright it meets the wall's edge first.
+        if (form, kind, motion) != ("taper", "wall", "upright")
+        for name in DEPTHS
+    ]
+    return dict(flat) | {
+        f"ball {kind} {motion} {name}": (None, kind, motion, name)
+        for kind in ("fillet", "edge")
+        for motion in AXES["wall"]
+        for name in DEPTHS
+    }
+
+
+NAMED = named()
+
+
+def planted(operation):
+    """Return the fault of an operation and the section that commits it."""
+    tool, kind, motion, name = NAMED[operation]
+    axes, depth = AXES.get(kind, AXES["wall"])[motion], DEPTHS[name]
+    if tool is None:
+        poses = (in_fillet if kind == "fillet" else on_edge)(axes, depth)
+    else:
+        poses = touching(tool, kind, axes, depth)
+        depth = plain(tool, kind, poses)
+    fault = Fault(operation, kind, depth, motion == "turning")
+    return fault, section_through(tool or BALL, operation, poses)
 
 
 def touching(tool, kind, axes, depth):
@@ -116,7 +121,10 @@ def plain(tool, kind, poses):
     beyond, (_, axes) = reaching(tool, kind, poses), poses_between(*poses, SHARES)
     if beyond.max() <= 1e-9:
         return 0.0
-    tried = np.unique(np.concatenate([[0, len(SHARES) - 1], np.argsort(-beyond)[:5]]))
+    # A cutter that keeps its axis is deepest where it reaches furthest.
+    keeps = np.array_equal(poses[0][1], poses[1][1])
+    furthest = np.argsort(-beyond)
+    tried = furthest[:1] if keeps else np.unique([0, len(SHARES) - 1, *furthest[:5]])
     return max(
         depth_in_plane(tool, axes[k], PLANES[kind][0], beyond[k]) for k in tried if beyond[k] > 0.0
     )
@@ -167,25 +175,24 @@ def on_edge(axes, depth):
     )
 
 
-FAULTS, SECTIONS = planned()
-
-
 @pytest.fixture(scope="module")
 def judged():
-    """What the verdict says of every operation, and its errors by operation."""
+    """The faults by operation, what the verdict says of every operation, and its errors by operation."""
+    faults, sections = zip(*map(planted, NAMED), strict=True)
     verdict = proof(
-        *clean_plan(), *SECTIONS, machine=FIVE_AXES, facets=(block_facets(),), bundles="z", cell=1.0
+        *clean_plan(), *sections, machine=FIVE_AXES, facets=(block_facets(),), bundles="z", cell=1.0
     )
     errors = {}
     for f in verdict.findings:
         if f.severity == "error":
             errors.setdefault(f.where[0], set()).add(f.code)
-    return {o.operation: o for o in verdict.operations}, errors
+    return {f.operation: f for f in faults}, {o.operation: o for o in verdict.operations}, errors
 
 
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.operation)
-def test_contact_measures_a_gouge_of_every_form_and_motion_within_its_bound(judged, fault):
-    operations, errors = judged
+@pytest.mark.parametrize("operation", NAMED)
+def test_contact_measures_a_gouge_of_every_form_and_motion_within_its_bound(judged, operation):
+    faults, operations, errors = judged
+    fault = faults[operation]
     found = operations[fault.operation]
     bound = (tolerance.TURNING_BOUND if fault.turning else tolerance.CONTACT_BOUND) + 1e-3
     assert found.gouge == approx(fault.depth, abs=bound)
