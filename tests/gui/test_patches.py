@@ -342,7 +342,7 @@ def test_local_features_are_exported_alone(shown, qtbot, tmp_path, kind, suffix)
     path = tmp_path / f"local{suffix}"
     dialog = shown.views["surface"].export_dialog
     shown.registry.run("patch.export")
-    dialog._ask_path = lambda proposed, chosen: str(path.with_suffix(""))
+    dialog._choose_path = lambda proposed, chosen: str(path.with_suffix(""))
     QTest.mouseClick(dialog.parts["local"], LEFT, pos=QPoint(8, 8))
     QTest.mouseClick(dialog.formats[kind], LEFT, pos=QPoint(8, 8))
     assert dialog.words() == ("local",) and dialog.count.text() == "4 faces in 2 groups"

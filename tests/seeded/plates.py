@@ -18,13 +18,22 @@ from seeded.parts import UNITS, Seeded, placed
 Height = Callable[[float, float], float]
 """Height (mm) over shares of length and width."""
 KINDS = ("boss", "dome", "dimple")
+MOST_DRAWS = 10
+"""Draws of a seed until its solid is valid: the kernel's booleans fail where local features meet a wavy top badly."""
 FEET = (0.0, 0.0, 1.5, 2.5)
 """mm: radii where a boss or dome meets the plate."""
 
 
 def plate(seed: int) -> Seeded:
-    """Return the random curved plate of a seed."""
-    draw = Random(f"plate {seed}")
+    """Return the random curved plate of a seed: the first of its draws whose solid the kernel finds no fault in."""
+    for number in range(MOST_DRAWS):
+        made = _drawn(seed, Random(f"plate {seed}" + (f", draw {number + 1}" if number else "")))
+        if cq.Shape.cast(made.shape).isValid():
+            return made
+    raise ValueError(f"plate {seed}: {MOST_DRAWS} draws gave no valid solid")
+
+
+def _drawn(seed: int, draw: Random) -> Seeded:
     columns, rows = draw.choice(((2, 2), (2, 2), (3, 2), (4, 2)))
     pitch = draw.uniform(24.0, 34.0)
     size = columns * pitch, rows * pitch

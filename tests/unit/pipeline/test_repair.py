@@ -211,6 +211,23 @@ def test_rounds_are_bounded_and_what_was_tried_is_told(deep):
     assert len(left.repairs) <= 2
 
 
+def test_what_nobody_planned_is_not_repaired(deep):
+    engine, session = deep
+    left_out = replace(
+        session,
+        process=replace(
+            session.process,
+            operations=tuple(
+                replace(o, suppressed=o.feature == "pocket-01") for o in session.process.operations
+            ),
+        ),
+    )
+    failed = engine.run(left_out)
+    (coverage,) = (f for f in failed.verdict.findings if f.code == "verify.coverage")
+    assert coverage.fix is None
+    assert failed.repairs == ()
+
+
 def test_a_fix_of_what_a_person_set_by_hand_is_not_made(deep):
     engine, session = deep
     (wall,) = (o for o in session.process.operations if o.kind == "wall")

@@ -250,7 +250,7 @@ class SetupSpace:
             peak = self._peak_in(band, z, feature, rounding)
             if peak is None:
                 gap = fillets.get(low, 0.0) - (z - low)
-                if gap > 0.0:
+                if low in fillets and gap > 0.0:
                     full = next((b for b in reversed(bands) if b.bottom not in peaks), None)
                     over = full or self._above_foot(feature, high, low + fillets[low])
                     grow = fillets[low] - (fillets[low] ** 2 - gap**2) ** 0.5

@@ -19,8 +19,13 @@ GENERAL = 0.9
 """Patches of any part can be grouped, which says nothing about what they are: a kind that explains as much of them is the better answer."""
 UPRIGHT = radians(0.5)
 """A face whose normals stay within this of square to a direction stands upright along it, in radians."""
-MAIN = 0.25
-"""Area of parallel planes over that of the largest set of them from which on their normal may be the direction the part is milled from."""
+STEEPEST = radians(30.0)
+"""A plane that leans less than this out of the upright is a wall, in radians: end mills with a taper or in steps cut it."""
+SLIGHT = 0.005
+"""Share of the area below which inclined planes are not named."""
+MAIN = 0.9
+"""Area of parallel planes over that of the largest set of them from which on their normal may be the direction the part is milled from: a
+top that waves along a side stands upright along that side, but nobody mills a plate from there."""
 HOLE = 0.1
 """Radius over the diagonal of the part's box up to which a hollow cylinder or cone is a hole, a countersink or a fillet."""
 
@@ -28,27 +33,32 @@ HOLE = 0.1
 def suitability(graph: FaceGraph) -> Suitability:
     """Return how near the curved share of a part's area comes to `ENOUGH`; all patches that are no slivers can be grouped.
 
-    A face is curved when it is no plane, stands upright along none of the part's main directions and is no hole. Of faces that enclose no
-    material nothing else can be made than groups.
+    A face is curved when it is no plane, stands upright along none of the part's main directions and is no hole; planes that lie inclined
+    to a direction count with them, for no end mill finishes these on its levels either. Of faces that enclose no material nothing else can
+    be made than groups.
     """
     whole = float(graph.area.sum())
     if whole == 0.0:
         return Suitability(score=0.0, explained=0.0, reason="the part has no face")
     bent = ~_plain(graph)
+    directions = _directions(graph)
     curved = min(
-        (float(graph.area[bent & _leans(graph, z)].sum()) for z in _directions(graph)),
+        (float(graph.area[bent & _leans(graph, z)].sum()) for z in directions),
         default=float(graph.area[bent].sum()),
     )
+    # Seen along a side's normal an inclined top would be a leaning wall: only the main direction tells.
+    inclined = sum(float(graph.area[_inclined(graph, z)].sum()) for z in directions[:1])
     explained = min(1.0, float(graph.area[~_slivers(graph)].sum()) / whole)
     fits, enclose = (
         (1.0, ", and the faces enclose no material")
         if graph.open_edges
-        else (min(1.0, curved / whole / ENOUGH), "")
+        else (min(1.0, (curved + inclined) / whole / ENOUGH), "")
     )
+    flat = f", {percent(inclined / whole)} inclined" if inclined / whole > SLIGHT else ""
     return Suitability(
         score=GENERAL * explained * fits,
         explained=explained,
-        reason=f"{percent(curved / whole)} of the area curved{enclose}",
+        reason=f"{percent(curved / whole)} of the area curved{flat}{enclose}",
     )
 
 
@@ -74,6 +84,13 @@ def _directions(graph: FaceGraph) -> list[Floats]:
         area = np.where(along, 0.0, area)
     most = max((size for size, _ in found), default=0.0)
     return [direction for size, direction in found if size >= MAIN * most]
+
+
+def _inclined(graph: FaceGraph, z: Floats) -> Bools:
+    """Return which faces (n,) are planes that lie neither level nor upright in a direction, and less steep than a wall that leans."""
+    plane = np.array(graph.surface) == "plane"
+    rise = np.abs(graph.normal @ z)
+    return np.asarray(plane & (rise < np.cos(ANGLE)) & (rise > np.sin(STEEPEST)))
 
 
 def _leans(graph: FaceGraph, z: Floats) -> Bools:

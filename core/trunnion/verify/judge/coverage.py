@@ -176,14 +176,7 @@ def _findings(
                 f"{100 * settings.coverage:.2f} %",
                 *face_tags(f.face for f in open_faces),
                 remedy="add operations for these faces, or accept the shortfall by name",
-                fix=Fix(
-                    kind="add_operation",
-                    reason="verify.coverage",
-                    amount=settings.coverage - of_reachable,
-                    faces=tuple(
-                        f.face for f in sorted(open_faces, key=lambda f: f.finished - f.area)
-                    ),
-                ),
+                fix=_coverage_fix(faces, settings.coverage - of_reachable),
             )
         )
     elif open_faces:
@@ -216,3 +209,20 @@ def _findings(
             )
         )
     return tuple(found)
+
+
+def _coverage_fix(faces: Sequence[FaceProof], short: float) -> Fix | None:
+    """Return the fix of a coverage that is short by a share: the planned faces with unfinished places, the least finished first.
+
+    None where these, finished whole, would not make up for it: faces that nobody planned need more than another cutter.
+    """
+    wanted = [f for f in faces if not f.blank_surface]
+    planned = [f for f in wanted if f.planned and f.area - f.finished > tolerance.AREA]
+    if sum(f.area - f.finished for f in planned) < short * sum(f.area for f in wanted):
+        return None
+    return Fix(
+        kind="add_operation",
+        reason="verify.coverage",
+        amount=short,
+        faces=tuple(f.face for f in sorted(planned, key=lambda f: f.finished - f.area)),
+    )
