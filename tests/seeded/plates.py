@@ -6,8 +6,10 @@ part lies and in which unit.
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable
 from math import cos, pi, sin
+from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -25,12 +27,19 @@ FEET = (0.0, 0.0, 1.5, 2.5)
 
 
 def plate(seed: int) -> Seeded:
-    """Return the random curved plate of a seed: the first of its draws whose solid the kernel finds no fault in."""
+    """Return the random curved plate of a seed: the first of its draws in whose file the kernel finds no fault."""
     for number in range(MOST_DRAWS):
         made = _drawn(seed, Random(f"plate {seed}" + (f", draw {number + 1}" if number else "")))
-        if cq.Shape.cast(made.shape).isValid():
+        if _is_sound(made):
             return made
     raise ValueError(f"plate {seed}: {MOST_DRAWS} draws gave no valid solid")
+
+
+def _is_sound(made: Seeded) -> bool:
+    """Return whether a part's file holds a solid without faults: some are valid only until they are written in inches."""
+    with tempfile.TemporaryDirectory() as folder:
+        read = cq.importers.importStep(str(made.written(Path(folder))))
+    return all(solid.isValid() for solid in read.solids().vals())
 
 
 def _drawn(seed: int, draw: Random) -> Seeded:
