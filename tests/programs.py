@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trunnion.findings import info, remark, warning
+from trunnion.findings import Fix, info, remark, warning
 from trunnion.geometry.cut import curve_cut, plane_cut
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh
@@ -18,6 +18,7 @@ from trunnion.model.motion.program import Program, ProgramSection
 from trunnion.model.motion.toolpath import ACROSS, Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.process import ProcessTree
+from trunnion.model.repair import PlanScore, RepairRound
 from trunnion.model.session import PartInfo, PostedFile, Session, SizeEntry, StepRecord
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Holder, Insert, Tool, TurningTool
@@ -438,6 +439,27 @@ def session() -> Session:
         "recognize": StepRecord(key="r1", seconds=0.5),
         "verify": StepRecord(key="v1", seconds=2.0, findings=verdict().findings),
     }
+    slower = Fix(kind="feed", operation="wall-01", reason="verify.power", amount=0.8)
+    score = PlanScore(errors=1, harms=0, unfinished=0.25, remarks=1, time=95.5)
+    repairs = (
+        RepairRound(
+            number=1,
+            fixes=(slower,),
+            findings=("wall-01 asks 41 kW",),
+            before=score,
+            after=replace(score, errors=0),
+            kept=True,
+        ),
+        RepairRound(
+            number=2,
+            fixes=(replace(slower, kind="add_operation", faces=(3, 4)),),
+            findings=("too little",),
+            before=score,
+            after=None,
+            kept=False,
+            refusal="no cutter",
+        ),
+    )
     choices = {
         "blank.side": 5,
         "route.plan": "panel-aluminium",
@@ -462,6 +484,7 @@ def session() -> Session:
         paths=paths,
         posted=posted,
         verdict=verdict(),
+        repairs=repairs,
         records=records,
     )
 

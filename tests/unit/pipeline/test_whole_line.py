@@ -174,7 +174,7 @@ def test_the_saved_project_opens_with_everything_done(line):
 def test_a_changed_setting_makes_stale_what_depends_on_it_and_nothing_else(line):
     engine, session, _ = line
     states = engine.states(engine.with_choices(session, {"verify.coverage": "0.98"}))
-    assert states == {**dict.fromkeys(STEPS, "done"), "verify": "stale"}
+    assert states == {**dict.fromkeys(STEPS, "done"), "verify": "stale", "repair": "stale"}
     states = engine.states(engine.with_choices(session, {"blank.top": "3"}))
     assert [s for s in STEPS if states[s] == "done"] == ["recognize", "size"]
 
@@ -233,7 +233,8 @@ def test_a_clamp_in_the_way_fails_the_proof_and_leaves_the_plan_as_it_is(line, t
     ]
     (tmp_path / "clamp.stl").write_text("solid clamp\n" + "\n".join(rows))
     clamped = engine.with_fixtures(session, [str(tmp_path / "clamp.stl")])
-    assert [name for name, state in engine.states(clamped).items() if state != "done"] == ["verify"]
+    stale = [name for name, state in engine.states(clamped).items() if state != "done"]
+    assert stale == ["verify", "repair"]
     failed = engine.run(clamped)
     assert failed.verdict.outcome is Outcome.FAILED
     assert {"verify.fixture"} == {f.code for f in failed.verdict.findings if f.severity == "error"}
