@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QHeaderView, QPushButton, QTableWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHeaderView, QTableWidget, QToolButton, QVBoxLayout, QWidget
 
 from trunnion.findings import Finding, Fix, Severity
 from trunnion_gui.document import Document
@@ -75,13 +75,19 @@ class MessagesDock(QWidget):
                 self.table.setCellWidget(row, _FIX, self._button(finding.fix))
             else:
                 self.table.removeCellWidget(row, _FIX)
-        self.table.setColumnHidden(_FIX, all(f.fix is None for f in listed))
+        buttons = [self.table.cellWidget(row, _FIX) for row in range(len(listed))]
+        widths = [button.sizeHint().width() for button in buttons if button is not None]
+        self.table.setColumnHidden(_FIX, not widths)
+        self.table.horizontalHeader().setSectionResizeMode(_FIX, QHeaderView.ResizeMode.Fixed)
+        self.table.setColumnWidth(_FIX, max(widths, default=0))
         self._share_width()
         self.counted.emit(len(listed))
 
-    def _button(self, fix: Fix) -> QPushButton:
+    def _button(self, fix: Fix) -> QToolButton:
         """Return the button that lets the planner take up a finding's fix."""
-        button = QPushButton(tr("Apply"))
+        button = QToolButton()
+        button.setObjectName("inTable")
+        button.setText(tr("Apply"))
         button.setToolTip(tr("Change the plan as the remedy says; run and prove it again after it"))
         button.clicked.connect(lambda: self._document.apply_fix(fix))
         return button

@@ -86,6 +86,8 @@ QLabel {{ color: {text}; background: transparent; }}
 QLabel#muted {{ color: {muted}; }}
 QLabel#tip {{ background: {text}; color: {panel}; border-radius: 4px; padding: 3px 7px; font-weight: 600; }}
 QToolButton#run {{ background: {accent_soft}; padding: 5px 9px; }}
+QToolButton#inTable {{ background: {accent_soft}; color: {accent}; padding: 0px 10px; margin: 1px 4px; }}
+QToolButton#inTable:hover {{ background: {raised}; }}
 QLabel#title {{ font-size: 15px; font-weight: 600; }}
 QLabel#welcome {{ font-size: 22px; font-weight: 600; }}
 QLabel#number {{ color: {muted}; font-weight: 600; }}
