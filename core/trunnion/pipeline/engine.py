@@ -22,7 +22,6 @@ from trunnion.pipeline.context import Context, Contexts
 from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.step import Step
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
-from trunnion.plan.repair.alternatives import fixes_after
 from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value, checked, choose, declared
@@ -199,10 +198,9 @@ class Engine:
         job = RepairJob(shop=self.context_of(session).shop, choices=session.choices)
         if fix.operation and fix.operation not in {o.id for o in session.process.operations}:
             raise BadInput(f"{fix.operation} is not in the plan any more: verify again")
-        for step in fixes_after(fix):
-            changed = applied(session.process, step, job)
-            if changed is not None:
-                return replace(session, process=changed)
+        changed = applied(session.process, fix, job)
+        if changed is not None:
+            return replace(session, process=changed)
         raise BadInput(
             f"{words_of(fix)}: no tool of the catalogue serves, or a person set the operation by hand; follow the remedy by hand"
         )

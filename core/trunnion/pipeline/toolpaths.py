@@ -143,7 +143,7 @@ def _make_one(
             str(reason),
             operation.id,
             operation.feature,
-            fix=Fix(kind="tool", operation=operation.id, reason="toolpath.refused"),
+            fix=Fix(kind="smaller_tool", operation=operation.id, reason="toolpath.refused"),
         )
         return OperationPath(operation=operation.id, findings=(refusal,))
     if len(kept.path):

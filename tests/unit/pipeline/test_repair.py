@@ -244,6 +244,11 @@ def test_one_fix_is_applied_alone(deep):
     )
     assert fixed.process.operation(wall.id).choices["cutting.feed_share"] == pytest.approx(0.5)
     assert engine.states(fixed)["verify"] == "stale"
+    with pytest.raises(BadInput, match="follow the remedy by hand"):
+        # Applied by a person it is never replaced by another kind, such as leaving the operation out.
+        engine.with_fix(
+            session, Fix(kind="feed", operation=wall.id, reason="verify.collision", amount=1.0)
+        )
     with pytest.raises(BadInput, match="not in the plan any more"):
         engine.with_fix(session, Fix(kind="feed", operation="wall-99", reason="verify.power"))
 

@@ -22,10 +22,7 @@ and the round is not kept."""
 
 def fixes_for(finding: Finding) -> tuple[Fix, ...]:
     """Return the fixes that are tried against a finding, in this order; none where it asks for none."""
-    return () if finding.fix is None else fixes_after(finding.fix)
-
-
-def fixes_after(fix: Fix) -> tuple[Fix, ...]:
-    """Return a fix and what else serves against its reason, in the order that they are tried in."""
-    kinds = ALTERNATIVES.get(fix.reason, (fix.kind,))
-    return tuple(replace(fix, kind=kind) for kind in kinds)
+    fix = finding.fix
+    if fix is None:
+        return ()
+    return tuple(replace(fix, kind=kind) for kind in ALTERNATIVES.get(finding.code, (fix.kind,)))
