@@ -124,14 +124,18 @@ def info(code: str, text: str, *where: str, remedy: str = "") -> Finding:
     return Finding(severity=Severity.INFO, code=code, text=text, where=where, remedy=remedy)
 
 
-def remark(code: str, text: str, *where: str, remedy: str = "") -> Finding:
+def remark(code: str, text: str, *where: str, remedy: str = "", fix: Fix | None = None) -> Finding:
     """Return a finding about time, surface quality or a chosen omission; a program with it may be released."""
-    return Finding(severity=Severity.REMARK, code=code, text=text, where=where, remedy=remedy)
+    return Finding(
+        severity=Severity.REMARK, code=code, text=text, where=where, remedy=remedy, fix=fix
+    )
 
 
-def warning(code: str, text: str, *where: str, remedy: str = "") -> Finding:
+def warning(code: str, text: str, *where: str, remedy: str = "", fix: Fix | None = None) -> Finding:
     """Return a finding that a person should look at before cutting."""
-    return Finding(severity=Severity.WARNING, code=code, text=text, where=where, remedy=remedy)
+    return Finding(
+        severity=Severity.WARNING, code=code, text=text, where=where, remedy=remedy, fix=fix
+    )
 
 
 def error(code: str, text: str, *where: str, remedy: str = "", fix: Fix | None = None) -> Finding:

@@ -21,10 +21,10 @@ from trunnion.model.session import Session
 from trunnion.model.tool import Tool
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import make_paths
+from trunnion.plan.contract import ToolAxis
 from trunnion.plan.freeform.reach import samples_on
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
-from trunnion.toolpath.contract import ToolAxis
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 

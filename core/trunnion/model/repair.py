@@ -64,12 +64,16 @@ class RepairRound:
 WORDS = {
     "add_operation": "finished once more by smaller cutters",
     "add_slim": "finished once more by slim cutters",
+    "allowance": "roughed farther off the faces",
+    "approach": "finished by a tool that leans",
     "clear_first": "what stands in the way roughed before",
     "drop": "left out",
     "feed": "fed more slowly",
+    "lift": "linked higher",
     "smaller_tool": "given a smaller cutter",
     "tolerance": "laid with finer passes",
     "tool": "given a cutter that reaches farther",
+    "trim": "cut only where a cutter before left something",
 }
 """Kinds of fixes as a person reads them; kinds of other packages by their name."""
 

@@ -204,7 +204,7 @@ def _repair(session: Session, context: Context, progress: Progress) -> Result:
     after = repaired(
         session,
         RepairJob(shop=context.shop, choices=session.choices),
-        checked(choose(RepairSettings, session.choices)).rounds,
+        checked(choose(RepairSettings, session.choices)),
         partial(_proven, context),
         progress,
     )

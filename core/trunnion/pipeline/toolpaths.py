@@ -21,11 +21,10 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.planning.scene import SessionContext, SetupScene
-from trunnion.plan.contract import DriveNeeds, Planner, planner_for
+from trunnion.plan.contract import DriveNeeds, Planner, ToolAxis, planner_for
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
-from trunnion.toolpath.contract import ToolAxis
 from trunnion.toolpath.motion.reorient import clearance_sphere, moved_over
 
 DRIVEN = 0.2

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from trunnion import registry
@@ -80,6 +81,13 @@ class RouteJob:
     def settings_of(self, group: type[T]) -> T:
         """Return a group of settings as chosen; raise `BadInput` for a value that is not allowed."""
         return checked(choose(group, self.choices))
+
+
+class ToolAxis(Enum):
+    """Whether a strategy's tool keeps the z axis of the cutting frame."""
+
+    FIXED = "fixed"
+    LEANING = "leaning"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any, Protocol, TypeVar
 
 from trunnion.findings import Finding
@@ -27,6 +26,7 @@ from trunnion.model.motion.toolpath import EMPTY, Toolpath
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.contract import ToolAxis
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -44,13 +44,6 @@ class Planned:
 
 Meets = Callable[[Tool, CuttingData, Any, Operation | None], Engagement]
 """From tool, cutting data, the strategy's settings and the operation that roughed there before to the largest engagement."""
-
-
-class ToolAxis(Enum):
-    """Whether a strategy's tool keeps the z axis of the cutting frame."""
-
-    FIXED = "fixed"
-    LEANING = "leaning"
 
 
 AxisRule = Callable[[Any], ToolAxis]

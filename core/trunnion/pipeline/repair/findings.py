@@ -15,10 +15,11 @@ def repair_findings(session: Session) -> tuple[Finding, ...]:
     vain = [f for r in session.repairs if not r.kept for f in r.fixes]
     found = []
     if kept:
+        rejected = session.repairs[0].before.errors > 0
         found.append(
             info(
                 "repair.kept",
-                f"the proof rejected the first plan; it was repaired: {_listed(kept)}",
+                f"the proof {'rejected' if rejected else 'remarked on'} the first plan; it was repaired: {_listed(kept)}",
                 *_operations(kept),
             )
         )

@@ -14,6 +14,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.repair import RepairRound
 from trunnion.model.session import Session
 from trunnion.pipeline.repair.score import score_of
+from trunnion.pipeline.repair.settings import RepairSettings
 from trunnion.plan.repair.alternatives import fixes_for
 from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import Progress
@@ -34,7 +35,7 @@ class Proposal:
         """Return whether a session still has an error of the same kind in the same operation."""
         return any(
             f.fix is not None and (f.code, f.fix.operation) == (self.fix.reason, self.fix.operation)
-            for f in _errors(session)
+            for f in session.findings()
         )
 
 
@@ -52,12 +53,13 @@ class Attempts:
 
 
 def repaired(
-    session: Session, job: RepairJob, most: int, prove: Prove, progress: Progress
+    session: Session, job: RepairJob, settings: RepairSettings, prove: Prove, progress: Progress
 ) -> Session:
-    """Return the session after at most `most` rounds of repair; the one given when it needs none, or nothing helped."""
+    """Return the session after the rounds of repair that settings allow; the one given when it needs none, or nothing helped."""
+    most = settings.rounds
     tried, rounds = Attempts(), list[RepairRound]()
     alone: list[Proposal] = []
-    while len(rounds) < most and session.verdict is not None and not session.verdict.releases:
+    while len(rounds) < most and _needs_repair(session, settings):
         together = [alone.pop(0)] if alone else _proposals(session, job, tried)
         changed = _with(session, together, job)
         if changed is None:
@@ -128,7 +130,7 @@ def _proposals(session: Session, job: RepairJob, tried: Attempts) -> list[Propos
     if process is None:
         return []
     found: dict[str, Proposal] = {}
-    for finding in _errors(session):
+    for finding in _repairable(session):
         for fix in fixes_for(finding):
             key = tried.key(fix, process)
             if fix.operation in found or key in tried.done:
@@ -139,7 +141,15 @@ def _proposals(session: Session, job: RepairJob, tried: Attempts) -> list[Propos
     return list(found.values())
 
 
-def _errors(session: Session) -> Iterator[Finding]:
-    """Yield the errors that ask for a fix: of toolpaths and proof, each once."""
-    seen = dict.fromkeys(f for f in session.findings() if f.severity is Severity.ERROR)
-    yield from (f for f in seen if f.fix is not None)
+def _needs_repair(session: Session, settings: RepairSettings) -> bool:
+    verdict = session.verdict
+    return verdict is not None and (not verdict.releases or settings.remarks)
+
+
+def _repairable(session: Session) -> Iterator[Finding]:
+    """Yield what asks for a fix, each once: the errors of toolpaths and proof while there are any that keep the plan from being released,
+    then remarks."""
+    released = session.verdict is not None and session.verdict.releases
+    for finding in dict.fromkeys(session.findings()):
+        if finding.fix is not None and (finding.severity is Severity.ERROR) is not released:
+            yield finding

@@ -16,3 +16,8 @@ class RepairSettings:
         label="Repair rounds",
         help="Most rounds in which fixes are tried and proven when a plan fails its proof; 0: none.",
     )
+    remarks: bool = setting(
+        False,
+        label="Repair remarks",
+        help="Also repair what the proof only remarks on a released plan: excess load, operations that cut mostly air.",
+    )

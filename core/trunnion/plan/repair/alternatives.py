@@ -8,11 +8,13 @@ from dataclasses import replace
 from trunnion.findings import Finding, Fix
 
 ALTERNATIVES: Mapping[str, tuple[str, ...]] = {
-    "verify.collision-stock": ("clear_first", "tool", "drop"),
-    "verify.collision": ("tool", "drop"),
-    "verify.gouge": ("tolerance", "smaller_tool", "drop"),
-    "verify.rapid-in-stock": ("clear_first", "drop"),
+    "verify.collision-stock": ("clear_first", "tool", "approach", "drop"),
+    "verify.collision": ("tool", "approach", "drop"),
+    "verify.gouge": ("tolerance", "allowance", "smaller_tool", "drop"),
+    "verify.rapid-in-stock": ("lift", "clear_first", "drop"),
     "verify.power": ("feed",),
+    "verify.load": ("feed",),
+    "verify.air": ("trim", "drop"),
     "verify.coverage": ("add_operation", "add_slim"),
     "toolpath.refused": ("smaller_tool", "drop"),
 }

@@ -144,7 +144,7 @@ def _rapids(proof: SetupProof, section: ProgramSection, rows: Ints) -> list[Find
             block_of(proof, section, row),
             remedy="lift the rapid, or make it a feed move",
             fix=Fix(
-                kind="clear_first",
+                kind="lift",
                 operation=section.operation,
                 reason="verify.rapid-in-stock",
                 amount=float(depth[row]),

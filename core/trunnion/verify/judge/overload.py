@@ -154,6 +154,12 @@ def _excess(
             section.operation,
             block_of(proof, section, worst),
             remedy=_feed_remedy(proof, section, offers),
+            fix=Fix(
+                kind="feed",
+                operation=section.operation,
+                reason="verify.load",
+                amount=float(1.0 / times[worst]),
+            ),
         )
     ], offers
 
@@ -231,5 +237,11 @@ def _air(
             section.operation,
             remedy="let it cut only what still stands, as a rest operation, or move it before what clears its "
             "place",
+            fix=Fix(
+                kind="trim",
+                operation=section.operation,
+                reason="verify.air",
+                amount=float(length[air].sum()) / run,
+            ),
         )
     ], [offer]
