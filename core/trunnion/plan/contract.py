@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from trunnion import registry
-from trunnion.findings import BadInput, Refused
+from trunnion.findings import BadInput, Finding, Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
@@ -120,11 +120,12 @@ class Drive(Protocol):
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OperationDrive:
     """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `identity`, what a digest is made of that tells
-    the drive from others: the drive itself, or its digest, with all else that its queries depend on."""
+    the drive from others: the drive itself, or its digest, with all else that its queries depend on. `findings` say what was cut off it."""
 
     setup: Setup
     drive: Drive
     identity: Any
+    findings: tuple[Finding, ...] = ()
 
 
 class Planner(Protocol):

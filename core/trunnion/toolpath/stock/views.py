@@ -27,7 +27,7 @@ NEIGHBOURHOOD = 3
 
 
 class StockViews:
-    """The stock of one setup as its directions see it."""
+    """The stock as the directions of all setups see it: it goes from one setup to the next."""
 
     def __init__(self, blank: Blank) -> None:
         self._blank = blank
