@@ -157,4 +157,6 @@ class SurfaceSpace:
     def _finding(self, operation: Operation, left_out: KeptOff) -> Finding:
         at = self.frame.to_world(left_out.at)
         where = (operation.feature, *face_tags(operation.faces))
-        return kept_off(operation.feature, left_out.area, left_out.by, operation.cutter, at, where)
+        return kept_off(
+            operation.feature, f"{left_out.area:.0f} mm2", left_out.by, operation.cutter, at, where
+        )

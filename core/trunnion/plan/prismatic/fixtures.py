@@ -7,6 +7,7 @@ blank's underside carries the blank, and a cutter may come down to it.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -15,6 +16,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Finding, face_tags, warning
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.geometry.plane.shadow import shadow_above
 from trunnion.model.blank import Blank
@@ -25,8 +27,20 @@ from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 
 SMALLEST = 1.0
 """mm2: less that is cut off needs no word."""
+SPACING = 0.5
+"""mm between the positions of a wall that are looked at."""
 KEPT_OFF = "fixture.kept-off"
 """Code of the finding on what a fixture keeps a cutter from."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Lost:
+    """What is cut off a level: mm2 in plan and of walls, a place there (3,) in the setup's frame, and the region that is kept out of."""
+
+    plan: float
+    walls: float
+    at: Floats
+    out: Region
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,19 +112,23 @@ def off_fixtures(
         replace(f, region=f.region.minus(_keep_out(fixtures, tool, f.z, f.region)))
         for f in drive.floors
     )
-    lost = [(level, was.wanted.minus(level.wanted)) for level, was in zip(cut, levels, strict=True)]
+    lost = [
+        _lost(level, was, drive, tool, _keep_out(fixtures, tool, was.bottom, was.boundary))
+        for level, was in zip(cut, levels, strict=True)
+    ]
     kept = replace(drive, levels=tuple(cut), floors=tuple(f for f in floors if f.region))
-    return kept, _findings(drive, lost, fixtures, tool, setup)
+    return kept, _findings(drive, [one for one in lost if one], fixtures, tool, setup)
 
 
 def kept_off(
-    what: str, area: float, by: Iterable[str], tool: Tool, at: Floats, where: Sequence[str]
+    what: str, size: str, by: Iterable[str], tool: Tool, at: Floats, where: Sequence[str]
 ) -> Finding:
-    """Return the finding on an area in mm2 of something that fixtures keep a cutter from; `at` (3,) is in it, in the part's coordinates."""
+    """Return the finding on what of something fixtures keep a cutter from, its size in words; `at` (3,) is there, in the part's
+    coordinates."""
     x, y, z = (float(v) + 0.0 for v in at)
     return warning(
         KEPT_OFF,
-        f"{area:.0f} mm2 of {what} at x {x:.1f} y {y:.1f} z {z:.1f} are left out: fixture {', '.join(by)} is in the way of {tool.name}",
+        f"{size} of {what} at x {x:.1f} y {y:.1f} z {z:.1f} are left out: fixture {', '.join(by)} is in the way of {tool.name}",
         *where,
         remedy="move the fixture, or finish what it covers in another setup",
     )
@@ -140,19 +158,60 @@ def _keep_out(fixtures: Sequence[HeldFixture], tool: Tool, z: float, near: Regio
     return union_all(found) if found else EMPTY_REGION
 
 
+def _lost(
+    level: DriveLevel, was: DriveLevel, drive: PlaneDrive, tool: Tool, out: Region
+) -> Lost | None:
+    """Return what is cut off a level: of its plan area, and of the walls along which the axis would be too near to a fixture."""
+    if not out:
+        return None
+    plan, walls = was.wanted.minus(level.wanted), 0.0
+    near, points = out.offset(tool.radius), []
+    for guide in drive.walls:
+        height = min(guide.top, was.top) - max(guide.bottom, was.bottom)
+        point, left, step = _spread(guide.curve)
+        met = near.contains(point + tool.radius * left) if height > 0.0 else np.zeros(0, bool)
+        if met.any():
+            walls += step * int(met.sum()) * height
+            points.append(point[met])
+    if plan:
+        points.append(np.array(plan.box()))
+    if not points or max(plan.area, walls) < SMALLEST:
+        return None
+    found = np.concatenate(points)
+    middle = 0.5 * (found.min(axis=0) + found.max(axis=0))
+    return Lost(plan=plan.area, walls=walls, at=np.append(middle, level.bottom), out=out)
+
+
+def _spread(curve: Curve) -> tuple[Floats, Floats, float]:
+    """Return positions (k, 2) spread evenly along a curve, the normals (k, 2) to its left there, and how far they are apart in mm."""
+    seg = curve.segments()
+    count = max(1, math.ceil(curve.length / SPACING))
+    s, ends = (np.arange(count) + 0.5) * (curve.length / count), np.cumsum(seg.length)
+    rows = np.minimum(np.searchsorted(ends, s), len(seg) - 1)
+    along = s - (ends[rows] - seg.length[rows])
+    direction = seg.directions(rows, along)
+    return (
+        seg.at(rows, along),
+        np.column_stack([-direction[:, 1], direction[:, 0]]),
+        curve.length / count,
+    )
+
+
 def _findings(
     drive: PlaneDrive,
-    lost: Sequence[tuple[DriveLevel, Region]],
+    lost: Sequence[Lost],
     fixtures: Sequence[HeldFixture],
     tool: Tool,
     setup: Setup,
 ) -> tuple[Finding, ...]:
-    """Return one finding on the most that is cut off a level, none where nothing is."""
-    level, area = max(lost, key=lambda one: one[1].area, default=(None, EMPTY_REGION))
-    if level is None or area.area < SMALLEST:
+    """Return one finding on what is cut off a drive, none where nothing is."""
+    if not lost:
         return ()
-    low, high = area.box()
-    at = setup.frame.to_world(np.array([*(0.5 * (low + high)), level.bottom]))
-    by = [f.name for f in fixtures if f.keeps_out(tool, level.bottom).intersect(area)]
+    most = max(lost, key=lambda one: one.plan + one.walls)
+    plan, walls = max(one.plan for one in lost), sum(one.walls for one in lost)
+    sizes = [f"{plan:.0f} mm2 in plan"] if plan >= SMALLEST else []
+    sizes += [f"{walls:.0f} mm2 of walls"] if walls >= SMALLEST else []
+    by = [f.name for f in fixtures if f.keeps_out(tool, float(most.at[2])).intersect(most.out)]
     where = (drive.feature, *face_tags(drive.faces))
-    return (kept_off(drive.feature, area.area, by, tool, at, where),)
+    at = setup.frame.to_world(most.at)
+    return (kept_off(drive.feature, " and ".join(sizes), by, tool, at, where),)
