@@ -81,5 +81,5 @@ def test_rapids_rise_over_a_tower(opened):
 def test_another_clamp_makes_the_toolpaths_stale(opened):
     engine, _ = opened
     session = programmed(opened, LOW, "toolpath")
-    assert "toolpath" not in engine.stale(session)
-    assert "toolpath" in engine.stale(replace(session, fixtures=()))
+    assert engine.states(session)["toolpath"] == "done"
+    assert engine.states(replace(session, fixtures=()))["toolpath"] == "stale"
