@@ -54,12 +54,14 @@ def drive(**changes):
 
 
 def cut(setup, tool=D10, **changes):
-    return fixtures.off_fixtures(drive(**changes), tool, setup, BLANK)
+    standing = [fixtures.HeldFixture.of(f, setup, BLANK) for f in setup.fixtures]
+    return fixtures.off_fixtures(drive(**changes), tool, setup, standing)
 
 
-def test_without_fixtures_a_drive_stays_as_it_is():
-    own = drive()
-    assert fixtures.off_fixtures(own, D10, SETUP, BLANK) == (own, ())
+def test_a_fixture_far_away_leaves_a_drive_as_it_is():
+    kept, found = cut(setup_with(clamp((-200, 0, 0), (-150, 60, 90))))
+    assert kept.levels[0].wanted.area == approx(6000.0)
+    assert found == () and len(kept.levels) == 1
 
 
 def test_the_clearance_is_as_far_above_a_fixture_as_above_the_blank():

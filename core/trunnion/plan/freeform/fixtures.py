@@ -27,8 +27,6 @@ from trunnion.progress import NO_PROGRESS, Progress
 
 NO_FACE = 0
 """The tag of triangles that are none of the part's."""
-DIGITS = 6
-"""Decimals to which two directions are one."""
 MOST_MITRE = 3.0
 """Of the room: a corner goes no further out than this, however sharp it is."""
 
@@ -67,14 +65,17 @@ def _outwards(points: Floats, triangles: Ints) -> Floats:
     normal = np.cross(b - a, c - a)
     across = np.hypot(normal[:, 0], normal[:, 1])
     side = across > math.sin(tolerance.TANGENT) * np.linalg.norm(normal, axis=1)
-    out = np.zeros_like(points)
     sides = normal[side, :2] / across[side, None]
-    corners = triangles[side]
-    for v in np.unique(corners):
-        beside = np.unique(np.round(sides[(corners == v).any(axis=1)], DIGITS), axis=0)
-        way = np.linalg.lstsq(beside, np.ones(len(beside)), rcond=None)[0]
-        size = float(np.linalg.norm(way))
-        out[v, :2] = tolerance.FIXTURE_ROOM * way * min(1.0, MOST_MITRE / max(size, 1.0))
+    # The least way d with n d = 1 for the normals n of all sides beside a corner, by their normal equations.
+    squares, sums = np.zeros((len(points), 2, 2)), np.zeros((len(points), 2))
+    for k in range(3):
+        np.add.at(squares, triangles[side, k], sides[:, :, None] * sides[:, None, :])
+        np.add.at(sums, triangles[side, k], sides)
+    inverse = np.linalg.pinv(squares, rcond=tolerance.COINCIDENT, hermitian=True)
+    way = np.einsum("vij,vj->vi", inverse, sums)
+    size = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1.0)
+    out = np.zeros_like(points)
+    out[:, :2] = tolerance.FIXTURE_ROOM * way * np.minimum(1.0, MOST_MITRE / size)
     return out
 
 

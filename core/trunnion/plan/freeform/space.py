@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
 from trunnion.findings import Finding, face_tags
 from trunnion.geometry.arrays import Floats
@@ -45,6 +45,7 @@ class SurfaceSpace:
     skin: Skin
     low: Floats
     high: Floats
+    _thick: list[ThickFixture] = field(init=False, repr=False, default_factory=list)
 
     @staticmethod
     def of(
@@ -68,9 +69,13 @@ class SurfaceSpace:
         """The cutting frame."""
         return self.setup.frame
 
-    def fixtures(self) -> tuple[ThickFixture, ...]:
+    def fixtures(self) -> Sequence[ThickFixture]:
         """Return the fixtures of the setup as they stand in the cutting frame."""
-        return tuple(ThickFixture.of(f, self.setup, self.blank) for f in self.setup.fixtures)
+        if len(self._thick) < len(self.setup.fixtures):
+            self._thick[:] = [
+                ThickFixture.of(f, self.setup, self.blank) for f in self.setup.fixtures
+            ]
+        return self._thick
 
     def blank_area(self) -> Region:
         """Return the blank seen along the tool."""

@@ -12,7 +12,6 @@ from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.tasks import TASK_MAKERS
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
-from trunnion.plan.prismatic.fixtures import off_fixtures
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.settings import RouteSettings
 from trunnion.progress import Progress
@@ -66,5 +65,4 @@ def _plane_driven(
         lambda: SetupSpace.of(scene.context.part, scene.recognition, scene.blank, scene.setup),
     )
     drive = drive_of(operation, scene.process, space)
-    drive, findings = off_fixtures(drive, operation.cutter, scene.setup, scene.blank)
-    return OperationDrive(setup=scene.setup, drive=drive, identity=drive, findings=findings)
+    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)

@@ -97,15 +97,12 @@ def tool_rings(tool: Tool) -> list[tuple[float, float]]:
 
 
 def off_fixtures(
-    drive: PlaneDrive, tool: Tool, setup: Setup, blank: Blank
+    drive: PlaneDrive, tool: Tool, setup: Setup, fixtures: Sequence[HeldFixture]
 ) -> tuple[PlaneDrive, tuple[Finding, ...]]:
-    """Return a drive without what the fixtures of its setup keep a cutter from, and a finding that names it.
+    """Return a drive without what fixtures, as they stand in its setup, keep a cutter from, and a finding that names it.
 
     Levels are parted where less of the tool is beside a fixture: over a low clamp all is cut that was wanted.
     """
-    fixtures = [HeldFixture.of(f, setup, blank) for f in setup.fixtures]
-    if not fixtures:
-        return drive, ()
     levels = [part for level in drive.levels for part in _parted(level, fixtures, tool)]
     cut = [_cut(level, fixtures, tool) for level in levels]
     floors = tuple(

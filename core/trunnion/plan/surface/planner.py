@@ -14,7 +14,6 @@ from trunnion.plan.freeform.roughing.layers import plane_drive_of
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.surface_drives import space_from, surface_driven
 from trunnion.plan.prismatic.drive import PlaneDrive
-from trunnion.plan.prismatic.fixtures import off_fixtures
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.surface.route import CUTTER_RULES, make_surface_route
 from trunnion.plan.surface.settings import SurfaceRouteSettings
@@ -77,5 +76,4 @@ def _plane_driven(
 ) -> OperationDrive:
     space = space_from(operation.direction, tolerance.CHORD, scene, progress)
     drive = plane_drive_of(operation, space, scene.stock(space.setup), progress, scene.process)
-    drive, findings = off_fixtures(drive, operation.cutter, space.setup, scene.blank)
-    return OperationDrive(setup=space.setup, drive=drive, identity=drive, findings=findings)
+    return OperationDrive(setup=space.setup, drive=drive, identity=drive)
