@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from trunnion.geometry.frame import Frame
+from trunnion.model.blank import Blank
 from trunnion.model.fixture import Fixture
 
 
@@ -23,3 +25,8 @@ class Setup:
     clearance: float
     machine: str
     fixtures: tuple[Fixture, ...] = ()
+
+    def top(self, blank: Blank) -> float:
+        """Return how high blank and fixtures stand, in the setup's frame."""
+        own = (self.frame.to_local(f.mesh.points)[:, 2].max() for f in self.fixtures)
+        return max(float(blank.box_in(self.frame)[1][2]), *map(float, own), -math.inf)

@@ -314,7 +314,14 @@ STEP_TABLE: tuple[Step, ...] = (
         settings=strategy_settings,
         uses=_strategies_used,
         work=_toolpath,
-        reads=lambda s, b: (b.part.digest, s.recognition, s.blank, s.setups, s.process),
+        reads=lambda s, b: (
+            b.part.digest,
+            s.recognition,
+            s.blank,
+            s.setups,
+            s.process,
+            *((s.fixtures,) if s.fixtures else ()),
+        ),
         done=lambda s: "toolpath" in s.records,
     ),
     Step(

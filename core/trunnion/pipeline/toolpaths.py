@@ -26,6 +26,7 @@ from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
 from trunnion.toolpath.motion.reorient import clearance_sphere, moved_over
+from trunnion.toolpath.stock.views import StockViews
 
 DRIVEN = 0.2
 """Share of an operation's progress for the geometry that drives it."""
@@ -43,6 +44,8 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
     made: list[OperationPath] = []
     planner, parts = planner_for(session.recognition.family), SessionContext(context, session)
     total = sum(len(session.process.of_setup(setup.name)) for setup in session.setups)
+    # What one setup leaves is the next one's stock, whatever side it looks from.
+    stock = StockViews(session.blank)
     for setup in session.setups:
         scene = SetupScene(
             context=parts,
@@ -51,6 +54,7 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
             setup=setup,
             process=session.process,
             fixtures=session.fixtures_of(setup.name),
+            handed_on=stock,
         )
         for operation in session.process.of_setup(setup.name):
             progress.at(len(made) / max(total, 1), f"toolpath of {operation.id}")
@@ -131,11 +135,12 @@ def _make_one(
                 settings,
                 progress.part(DRIVEN, 1.0),
             )
-            sphere = clearance_sphere(scene.blank, replace(scene.setup, fixtures=scene.fixtures))
+            sphere = clearance_sphere(scene.blank, scene.setup)
             path = moved_over(turned(planned.path, setup.frame, scene.setup.frame), before, sphere)
             kept = OperationPath(
                 operation=operation.id, path=path, findings=tuple(planned.findings), key=key
             )
+        kept = replace(kept, findings=_with(driven.findings, kept.findings))
     except Refused as reason:
         refusal = error(
             "toolpath.refused",
@@ -154,6 +159,12 @@ def _make_one(
         )
         scene.last, scene.tool = kept, cutter
     return kept
+
+
+def _with(first: Sequence[Finding], others: Sequence[Finding]) -> tuple[Finding, ...]:
+    """Return findings once each: those of a path that was kept hold those of its drive already."""
+    codes = {f.code for f in first}
+    return (*first, *(f for f in others if f.code not in codes))
 
 
 def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:

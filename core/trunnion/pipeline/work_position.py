@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Machine
 from trunnion.model.session import Session
 from trunnion.model.setup import Setup
+from trunnion.plan.setups import held
 from trunnion.shop.kinematics import WorkPosition, WorkPositions
 from trunnion.toolpath.motion.reorient import clearance_sphere
 
@@ -19,10 +19,10 @@ def work_positions_of(session: Session, machines: Mapping[str, Machine]) -> Work
     """Return where the work of every setup stands; setups on machines that the catalogue doesn't know are left out."""
     if session.blank is None:
         return {}
-    held = (replace(s, fixtures=session.fixtures_of(s.name)) for s in session.setups)
+    setups = (held(s, session.fixtures_of(s.name), session.blank) for s in session.setups)
     return {
         s.name: work_position_of(session.blank, s, machines[s.machine])
-        for s in held
+        for s in setups
         if s.machine in machines
     }
 

@@ -7,12 +7,12 @@ use any strategy: it makes the drive geometry that the strategy declares.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from trunnion import registry
-from trunnion.findings import BadInput, Refused
+from trunnion.findings import BadInput, Finding, Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
@@ -24,9 +24,11 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.plan.clearance import ClearanceScene
+from trunnion.plan.prismatic.drive import PlaneDrive
+from trunnion.plan.prismatic.fixtures import HeldFixture, off_fixtures
 from trunnion.progress import Progress
 from trunnion.registry import PLANNERS
-from trunnion.settings import Value, checked, choose
+from trunnion.settings import Value, checked, choose, digest
 from trunnion.shop import Shop
 
 if TYPE_CHECKING:
@@ -128,11 +130,12 @@ class Drive(Protocol):
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OperationDrive:
     """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `identity`, what a digest is made of that tells
-    the drive from others: the drive itself, or its digest, with all else that its queries depend on."""
+    the drive from others: the drive itself, or its digest, with all else that its queries depend on. `findings` say what was cut off it."""
 
     setup: Setup
     drive: Drive
     identity: Any
+    findings: tuple[Finding, ...] = ()
 
 
 class Planner(Protocol):
@@ -186,10 +189,22 @@ def driven_by(
     scene: Scene,
     progress: Progress,
 ) -> OperationDrive:
-    """Return the drive of an operation by the maker for the class that its strategy needs; raise `Refused` where there is none."""
+    """Return the drive of an operation by the maker for the class that its strategy needs; raise `Refused` where there is none.
+
+    What fixtures keep its cutter from is cut off a plane drive; makers of other drives see to that themselves.
+    """
     if needs.drive not in makers:
         raise Refused(
             f"{operation.id}: {operation.strategy} is driven by a {needs.drive.__name__}, which is not made for {planner.noun}; "
             "choose another strategy"
         )
-    return makers[needs.drive](operation, needs, scene, progress)
+    driven = makers[needs.drive](operation, needs, scene, progress)
+    if not (scene.fixtures and isinstance(driven.drive, PlaneDrive)):
+        return driven
+    setup = driven.setup
+    fixtures = scene.once(
+        ("fixtures", digest(setup.frame)),
+        lambda: tuple(HeldFixture.of(f, setup, scene.blank) for f in scene.fixtures),
+    )
+    drive, findings = off_fixtures(driven.drive, operation.cutter, setup, fixtures)
+    return replace(driven, drive=drive, identity=(driven.identity, drive), findings=findings)

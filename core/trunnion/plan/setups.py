@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
+from trunnion.model.fixture import Fixture
 from trunnion.model.setup import Setup
 from trunnion.settings import setting, settings
 
@@ -65,6 +69,13 @@ def make_setups(
     if any(from_below(f) for f in recognition):
         frames.append(Frame(blank.frame.origin, blank.frame.x, -blank.frame.z))
     return tuple(_setup(n, frame, blank, settings) for n, frame in enumerate(frames))
+
+
+def held(setup: Setup, fixtures: Sequence[Fixture], blank: Blank) -> Setup:
+    """Return a setup with the fixtures that hold the part in it, its clearance as far above the highest of them as above the blank."""
+    own = replace(setup, fixtures=tuple(fixtures))
+    higher = own.top(blank) - setup.top(blank)
+    return replace(own, clearance=setup.clearance + higher) if higher > 0.0 else own
 
 
 def from_below(feature: Feature) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import Any
 
 from trunnion.cli.common import open_session, part_command, progress_of, show_findings, show_json
@@ -23,9 +22,9 @@ def add(commands: Any) -> None:
         "--nc",
         action="append",
         default=[],
-        type=Path,
-        metavar="FILE",
-        help="NC text of a setup, in the order of the setups; may be repeated",
+        metavar="[SETUP=]FILE",
+        help="NC text of a setup, in the order of the setups or for the one that is named (S2=FILE), on the stock that those before it "
+        "leave; may be repeated",
     )
     made.add_argument(
         "--fine",
@@ -44,6 +43,7 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the verdict."""
+    from trunnion.pipeline.engine import fixture_word
     from trunnion.pipeline.proof import fine_faces
 
     faces = fine_faces.faces_named(options.fine) if options.fine else ()
@@ -52,8 +52,8 @@ def run(options: argparse.Namespace) -> int:
     if options.nc:
         from trunnion.pipeline.proof.external_nc import text_of
 
-        for file in options.nc:
-            text_of(file)
+        for word in options.nc:
+            text_of(fixture_word(word)[1])
     engine, session = open_session(options, "toolpath" if options.nc else "verify")
     if options.nc:
         from trunnion.pipeline.proof.external_nc import verify_texts
@@ -67,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         verdict = proof_dict(
             session,
-            tuple(str(f) for f in options.nc),
+            tuple(str(fixture_word(w)[1]) for w in options.nc),
             {n: r.seconds for n, r in session.records.items()},
         )
         show_json(verdict | ({"fine": fine_faces.fine_dict(figures)} if figures else {}))

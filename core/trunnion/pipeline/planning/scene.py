@@ -19,6 +19,7 @@ from trunnion.model.tool import Tool
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.planning.clearance import PartClearance
 from trunnion.plan.contract import PartContext
+from trunnion.plan.setups import held
 from trunnion.progress import Progress
 from trunnion.settings import digest
 from trunnion.toolpath.motion.reorient import Pose
@@ -64,7 +65,11 @@ class SessionContext:
 
 @dataclass(slots=True, kw_only=True)
 class SetupScene:
-    """What the operations of one setup are made in: the part, the stock that is left, and the last path with its tool."""
+    """What the operations of one setup are made in: the part, the stock that is left, and the last path with its tool.
+
+    `handed_on` is the stock that the setups before have left; without it the blank is uncut. The setup is held by its fixtures
+    (`plan.setups.held`).
+    """
 
     context: PartContext
     recognition: Recognition
@@ -72,13 +77,15 @@ class SetupScene:
     setup: Setup
     process: ProcessTree
     fixtures: tuple[Fixture, ...]
+    handed_on: StockViews | None = None
     sides: StockViews = field(init=False)
     last: OperationPath | None = None
     tool: Tool | None = None
     _made: dict[Hashable, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.sides = StockViews(self.blank)
+        self.setup = held(self.setup, self.fixtures, self.blank)
+        self.sides = StockViews(self.blank) if self.handed_on is None else self.handed_on
 
     def stock(self, setup: Setup) -> PlanningStock:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""

@@ -16,6 +16,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.verdict import Outcome, Verdict
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.work_position import work_positions_of
+from trunnion.plan import setups
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
 from trunnion.post.settings import OF_MACHINE, PostSettings
@@ -42,8 +43,11 @@ def program_of(session: Session, setup: Setup) -> Program:
 
 
 def held(session: Session, setup: Setup) -> Setup:
-    """Return a setup with the fixtures that hold the part in it."""
-    return replace(setup, fixtures=session.fixtures_of(setup.name))
+    """Return a setup with the fixtures that hold the part in it, its clearance over them."""
+    fixtures = session.fixtures_of(setup.name)
+    if session.blank is None:
+        return replace(setup, fixtures=fixtures)
+    return setups.held(setup, fixtures, session.blank)
 
 
 def programs_of(session: Session) -> tuple[Program, ...]:
@@ -206,7 +210,7 @@ def prove_programs(
             f"fixture {strange.name} is for setup {strange.setup}; the part has {', '.join(names)}"
         )
     machines = context.shop.machines
-    setups = [p.setup for p in programs] or session.process.setups[:1]
+    used = [p.setup for p in programs] or session.process.setups[:1]
     planned = {
         tag
         for operation in session.process.operations
@@ -218,7 +222,7 @@ def prove_programs(
         context.part,
         session.blank,
         context.shop.tools,
-        [machine_of(s, machines) for s in setups],
+        [machine_of(s, machines) for s in used],
         checked(choose(ProofSettings, session.choices)),
         progress,
         planned_faces=sorted(planned),

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+from trunnion.findings import Finding
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
@@ -65,11 +66,12 @@ class ExactPoints(Protocol):
 class SurfaceDrive:
     """All that a surface strategy needs to know of the geometry, in the cutting frame.
 
-    `faces`: tags to be finished; `exact` their exact surfaces in the same order; `skin`: the whole part. `low`, `high` (3,): the box of the
+    `faces`: tags to be finished; `exact` their exact surfaces in the same order; `skin`: the whole part, with the setup's
+    fixtures as triangles of no face. `low`, `high` (3,): the box of the
     blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
     in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` identifies all of this. `query_for`
     returns a tool's clearance query: which poses are clear of part and fixtures and within the machine's rotary limits
-    (`pipeline.planning.clearance`); None where no tool may lean.
+    (`pipeline.planning.clearance`); None where no tool may lean. `findings` say what fixtures keep the cutter from.
     """
 
     feature: str
@@ -86,8 +88,9 @@ class SurfaceDrive:
     digest: str
     earlier: Tool | None = None
     query_for: Callable[[Tool], ClearanceQuery] | None = None
+    findings: tuple[Finding, ...] = ()
 
     @property
     def is_empty(self) -> bool:
-        """Never: faces are finished whatever is over them."""
-        return False
+        """Whether fixtures keep the cutter from all of the faces: else they are finished whatever is over them."""
+        return not self.faces and bool(self.findings)

@@ -24,12 +24,13 @@ def is_upright(direction: Direction) -> bool:
 def cutting_setup(setup: Setup, direction: Direction, blank: Blank) -> Setup:
     """Return a setup as a tool from a direction (3,) in its frame sees it: the frame's z is that direction, its origin stays.
 
-    The clearance is as far above the blank as the setup's own is. Upright it is the setup itself.
+    The clearance is as far above blank and fixtures as the setup's own is. Upright it is the setup itself.
     """
     if is_upright(direction):
         return setup
     z = setup.frame.world_direction(np.asarray(direction, dtype=np.float64))
     x = setup.frame.x if abs(setup.frame.x @ z) < abs(setup.frame.y @ z) else setup.frame.y
     frame = Frame(setup.frame.origin, x, z)
-    above = setup.clearance - float(blank.box_in(setup.frame)[1][2])
-    return replace(setup, frame=frame, clearance=float(blank.box_in(frame)[1][2]) + above)
+    above = setup.clearance - setup.top(blank)
+    turned = replace(setup, frame=frame)
+    return replace(turned, clearance=turned.top(blank) + above)

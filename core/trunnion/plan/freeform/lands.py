@@ -11,17 +11,15 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import shapely
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
+from trunnion.geometry.plane.shadow import shadow_above
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.finishing.areas import connected
 from trunnion.plan.freeform.keys import number
-from trunnion.plan.freeform.roughing.heights import region_of
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive
 from trunnion.progress import NO_PROGRESS, Progress
@@ -38,8 +36,6 @@ NECK = 1.0
 and a neck does not cut."""
 UNDER = math.sin(math.radians(0.01))
 """Part along -z of the normal from which on a triangle hangs over: 1 um in 6 mm."""
-LAP, EVEN = 1e-3, 0.02
-"""mm that shadows of neighbouring triangles overlap by, and that the rim of them all is evened by, always outwards."""
 TOUCHING = 0.02
 """mm: a disc that is smaller by this is free wherever the cutter only touches what is beside it."""
 HAIR = 0.02
@@ -104,20 +100,7 @@ class PartAbove:
         )
         if not hangs.any():
             return EMPTY_REGION
-        corners, whole = corners[hangs], corners[hangs][:, :, 2].min(axis=1) >= z
-        pieces = np.concatenate(
-            [
-                np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])),
-                [shapely.convex_hull(shapely.MultiPoint(_above(c, z))) for c in corners[~whole]],
-            ]
-        )
-        # Each is grown by itself: then neighbours overlap, where they would only touch along an edge that is none the same.
-        shadow = shapely.union_all(shapely.buffer(pieces, 2.0 * skin.bound + LAP, quad_segs=1))
-        return region_of(
-            shapely.simplify(
-                shapely.buffer(shadow, EVEN, join_style="mitre", mitre_limit=2.0), EVEN
-            )
-        )
+        return shadow_above(corners[hangs], z, 2.0 * skin.bound)
 
     def free(self, z: float, tool: Tool, clearances: LandClearances) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
@@ -281,14 +264,3 @@ def _together(lands: Sequence[Land]) -> list[list[Land]]:
         else:
             found.append([land])
     return found
-
-
-def _above(corners: Floats, z: float) -> Floats:
-    """Return the plan (k, 2) of what of a triangle (3, 3) is above a height."""
-    found = []
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if a[2] >= z:
-            found.append(a[:2])
-        if (a[2] >= z) != (b[2] >= z):
-            found.append(a[:2] + (z - a[2]) / (b[2] - a[2]) * (b - a)[:2])
-    return np.array(found).reshape(-1, 2)

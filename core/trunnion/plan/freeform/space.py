@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
+from trunnion.findings import Finding, face_tags
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.plane.region import Region
@@ -19,8 +20,10 @@ from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.finishing.rest import remaining_of, without_met
+from trunnion.plan.freeform.fixtures import KeptOff, ThickFixture, off_fixtures, with_fixtures
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
+from trunnion.plan.prismatic.fixtures import kept_off
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 
@@ -42,6 +45,7 @@ class SurfaceSpace:
     skin: Skin
     low: Floats
     high: Floats
+    _thick: list[ThickFixture] = field(init=False, repr=False, default_factory=list)
 
     @staticmethod
     def of(
@@ -64,6 +68,14 @@ class SurfaceSpace:
     def frame(self) -> Frame:
         """The cutting frame."""
         return self.setup.frame
+
+    def fixtures(self) -> Sequence[ThickFixture]:
+        """Return the fixtures of the setup as they stand in the cutting frame."""
+        if len(self._thick) < len(self.setup.fixtures):
+            self._thick[:] = [
+                ThickFixture.of(f, self.setup, self.blank) for f in self.setup.fixtures
+            ]
+        return self._thick
 
     def blank_area(self) -> Region:
         """Return the blank seen along the tool."""
@@ -97,7 +109,8 @@ class SurfaceSpace:
         """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for`
         returns the clearance query of a tool.
 
-        Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
+        Unless the tool leans, what it can't come to without its shank or holder meeting the part, or any of it a fixture of the setup,
+        is none of its area.
         """
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
@@ -105,6 +118,13 @@ class SurfaceSpace:
             skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress)
         if not needs.leans:
             skin, faces = without_met(skin, faces, operation.cutter, lowest, height, progress)
+        fixtures, left_out = self.fixtures(), None
+        if fixtures and not needs.leans:
+            skin, faces, left_out = off_fixtures(
+                skin, faces, operation.cutter, fixtures, lowest, height, progress
+            )
+        if fixtures:
+            skin = with_fixtures(skin, fixtures)
         identity = digest(
             self.part.digest,
             self.part.solid,
@@ -136,4 +156,12 @@ class SurfaceSpace:
             digest=identity,
             earlier=earlier,
             query_for=query_for,
+            findings=() if left_out is None else (self._finding(operation, left_out),),
+        )
+
+    def _finding(self, operation: Operation, left_out: KeptOff) -> Finding:
+        at = self.frame.to_world(left_out.at)
+        where = (operation.feature, *face_tags(operation.faces))
+        return kept_off(
+            operation.feature, f"{left_out.area:.0f} mm2", left_out.by, operation.cutter, at, where
         )

@@ -39,4 +39,9 @@ def surface_driven(
     named = next((t for t in scene.process.tools() if t.name == name), None)
     earlier = rotating(named, operation.id) if named is not None else None
     drive = space.drive_of(operation, needs, earlier, around, progress)
-    return OperationDrive(setup=space.setup, drive=drive, identity=(drive.digest, scene.fixtures))
+    return OperationDrive(
+        setup=space.setup,
+        drive=drive,
+        identity=(drive.digest, scene.fixtures),
+        findings=drive.findings,
+    )

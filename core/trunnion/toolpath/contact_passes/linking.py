@@ -122,6 +122,13 @@ class _Blocks:
         # A builder without a block: it answers how low the tip may go over the stock before the operation.
         self._air = PathBuilder(tool, data, stock, setup, safety)
         self._tool, self._data, self._drive = tool, data, drive
+        held = [
+            drive.low,
+            drive.high,
+            *(setup.frame.to_local(f.mesh.points) for f in setup.fixtures),
+        ]
+        corners = np.vstack(held)[:, :2]
+        self._low, self._high = corners.min(axis=0), corners.max(axis=0)
         self._parts: list[tuple[Floats, Floats, Motion, float, Mark]] = []
 
     @property
@@ -200,7 +207,7 @@ class _Blocks:
             self._rapid(stop, axis)
 
     def _outside(self, here: Floats, axis: Floats) -> list[Floats]:
-        """Return the positions that a tool passes along its axis from the work up to clearance: past the blank's side and up
+        """Return the positions that a tool passes along its axis from the work up to clearance: past blank and fixtures and up
         from there where it leans so much that the path up is longer."""
         height = self._air.clearance + _below(self._tool, float(axis[2]))
         up = (height - here[2]) / axis[2] if axis[2] > 0.0 else math.inf
@@ -208,7 +215,7 @@ class _Blocks:
             max([self._tool.radius, *(max(r0, r1) for _, r0, _, r1 in self._tool.profile())])
             + self._air.safety
         )
-        wall = np.where(axis[:2] > 0.0, self._drive.high[:2] + aside, self._drive.low[:2] - aside)
+        wall = np.where(axis[:2] > 0.0, self._high + aside, self._low - aside)
         to_wall = np.divide(
             wall - here[:2], axis[:2], out=np.full(2, math.inf), where=axis[:2] != 0.0
         ).min()

@@ -26,7 +26,8 @@ ASIDE = 1.5
 
 
 def lowest_tip(builder: PathBuilder, start: ArrayLike, end: ArrayLike) -> float:
-    """Return how low the tip may go between two positions (2,) without anything touching what may be there; -inf over nothing."""
+    """Return how low the tip may go between two positions (2,) without anything touching stock or fixtures that may be there; -inf over
+    nothing."""
     stock, tool = builder.stock(), builder.tool
     lowest = stock.height(start, end, tool.radius)
     for z0, r0, _, r1 in tool.profile():
@@ -34,6 +35,9 @@ def lowest_tip(builder: PathBuilder, start: ArrayLike, end: ArrayLike) -> float:
             lowest = max(
                 lowest, stock.height(start, end, max(r0, r1) + builder.safety) - z0 + builder.safety
             )
+    if builder.obstacles is not None:
+        a, b = (np.asarray(v, dtype=np.float64)[:2] for v in (start, end))
+        lowest = max(lowest, builder.obstacles.lowest_tip(tool, a, b))
     return lowest
 
 

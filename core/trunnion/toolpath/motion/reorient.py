@@ -43,7 +43,6 @@ class ClearanceSphere:
 def clearance_sphere(blank: Blank, setup: Setup) -> ClearanceSphere:
     """Return the sphere round the blank and the fixtures of a setup, as far from them as the clearance height is from the blank."""
     corners = blank.corners(setup.frame)
-    safe = max(setup.clearance - float(corners[:, 2].max()), LEAST_SAFE)
     points = np.vstack(
         [
             corners,
@@ -54,6 +53,7 @@ def clearance_sphere(blank: Blank, setup: Setup) -> ClearanceSphere:
             ),
         ]
     )
+    safe = max(setup.clearance - float(points[:, 2].max()), LEAST_SAFE)
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     radius = float(np.linalg.norm(points - centre, axis=1).max()) + safe
     return ClearanceSphere(centre=centre, radius=radius / math.cos(0.5 * STEP))

@@ -7,8 +7,10 @@ import math
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.findings import error
+from trunnion.findings import error, info
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
@@ -16,14 +18,18 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.axis_region import AxisRegion, level_at, parts_where, points_along
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion import choices
 from trunnion.toolpath.motion.builder import PathBuilder
-from trunnion.toolpath.motion.link import travel
+from trunnion.toolpath.motion.link import is_free, top_under, travel
+from trunnion.toolpath.offsetting.entry import ramp_along
 from trunnion.toolpath.offsetting.levels import steps_down
 from trunnion.toolpath.offsetting.rings import SAFE_SHARE
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
+RAMP = math.radians(3.0)
+"""Slope of the ramp into material that no row comes to from outside, between fixtures."""
 ONE_ROW = "one row takes the whole top"
 
 
@@ -93,22 +99,70 @@ def face(
                 ),
             )
         )
-    (x0, y0), (x1, y1) = area.box()
+    box = _standing(stock, area, drive.bottom)
+    if box is None:
+        nothing = "what is over it has gone in an earlier setup"
+        return Planned(findings=(info("face.gone", f"{drive.feature}: {nothing}", drive.feature),))
+    (x0, y0), (x1, y1) = box
     # Rows run along the longer side; `turned` says that this is y.
     turned = y1 - y0 > x1 - x0
     along, across = ((y0, y1), (x0, x1)) if turned else ((x0, x1), (y0, y1))
     rows = _rows(across, tool, data.width, settings.overlap)
     out = tool.radius + settings.run_out
     heights = steps_down(max(drive.top, drive.stock_top), drive.bottom, data.depth)
+    ends = (along[0] - out, along[1] + out)
     for z in heights:
         progress.at(
             (drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW),
             f"{drive.feature}: layer at {z:.3f}",
         )
-        _cut_rows(
-            builder, rows, (along[0] - out, along[1] + out), z, turned, settings.pattern == "zigzag"
-        )
+        free = AxisRegion.of(level_at(drive, z).boundary, tool.radius)
+        whole = [_row(v, ends, turned) for v in rows]
+        if all(free.holds_line(row.start, row.end) for row in whole):
+            _cut_rows(builder, rows, ends, z, turned, settings.pattern == "zigzag")
+        else:
+            _cut_beside(builder, whole, area, free, z)
     return Planned(path=builder.finished())
+
+
+def _standing(stock: PlanningStock, area: Region, z: float) -> tuple[Floats, Floats] | None:
+    """Return the box (low, high) of an area as far as stock stands over a height there; None where none does."""
+    low, high = area.box()
+    cells = np.argwhere(stock.heights > z + tolerance.SEW)
+    if not len(cells):
+        return None
+    first = stock.corner + stock.cell * (cells.min(axis=0) - 1)
+    last = stock.corner + stock.cell * (cells.max(axis=0) + 2)
+    return np.maximum(low, first), np.minimum(high, last)
+
+
+def _row(v: float, ends: tuple[float, float], turned: bool) -> Curve:
+    return Curve.polyline([(v, u) if turned else (u, v) for u in ends])
+
+
+def _cut_beside(
+    builder: PathBuilder, rows: list[Curve], area: Region, free: AxisRegion, z: float
+) -> None:
+    """Cut what of rows lies where the axis may be, each part from outside of an area inwards, then go along the rim of what is kept
+    free for the ridges between their ends."""
+    near = area.offset(builder.tool.radius)
+    rims = [c for c in free.region.curves() if near.contains(c.points).any()]
+    parts = [part for row in rows for part in parts_where(row, free.depth)]
+    for part in [*parts, *(p for c in rims for p in parts_where(c, near.signed_distance))]:
+        inwards = part
+        if (
+            not part.closed
+            and is_free(builder, part.end, z)
+            and not is_free(builder, part.start, z)
+        ):
+            inwards = part.reversed()
+        if is_free(builder, inwards.start, z):
+            travel(builder, inwards.start, z)
+        else:
+            opened = inwards.split(0.0, 0.0) if inwards.closed else inwards
+            top = max(top_under(builder, p) for p in points_along(opened)[1])
+            ramp_along(builder, opened, top, z, RAMP)
+        builder.curve(inwards, z, builder.data.feed)
 
 
 def _one_row(tool: Tool, overlap: float) -> float:

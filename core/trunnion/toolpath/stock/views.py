@@ -27,7 +27,7 @@ NEIGHBOURHOOD = 3
 
 
 class StockViews:
-    """The stock of one setup as its directions see it."""
+    """The stock as the directions of all setups see it: it goes from one setup to the next."""
 
     def __init__(self, blank: Blank) -> None:
         self._blank = blank
@@ -47,8 +47,9 @@ class StockViews:
             if other != name and self._known.get((name, other)) != stock.digest:
                 self._known[name, other] = stock.digest
                 lowest = _lowest(self._blank, setup.frame)
+                foot = _lowest(self._blank, self._frames[other])
                 self._stocks[name] = _lowered(
-                    self._stocks[name], setup.frame, stock, self._frames[other], lowest
+                    self._stocks[name], setup.frame, stock, self._frames[other], lowest, foot
                 )
         return self._stocks[name]
 
@@ -64,10 +65,18 @@ class StockViews:
 
 
 def _lowered(
-    stock: PlanningStock, frame: Frame, other: PlanningStock, other_frame: Frame, lowest: float
+    stock: PlanningStock,
+    frame: Frame,
+    other: PlanningStock,
+    other_frame: Frame,
+    lowest: float,
+    foot: float,
 ) -> PlanningStock:
-    """Return a stock without what another one, seen from elsewhere, knows to be gone; nothing is lower than `lowest`."""
-    material = maximum_filter(other.heights, NEIGHBOURHOOD, mode="nearest")
+    """Return a stock without what another one, seen from elsewhere, knows to be gone; nothing is lower than `lowest`, nor the other one's
+    blank than `foot`."""
+    # Cut down to the blank's underside nothing is left, on either side of that height.
+    standing = np.where(other.heights > foot + tolerance.COINCIDENT, other.heights, -np.inf)
+    material = maximum_filter(standing, NEIGHBOURHOOD, mode="nearest")
     positions, heights = _centres(stock), stock.heights.ravel().copy()
     step, last = stock.cell, np.array(material.shape) - 1
     rows = np.flatnonzero(heights > lowest)

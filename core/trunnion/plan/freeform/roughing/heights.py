@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
+from trunnion.geometry.plane.shadow import region_of
 from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.progress import NO_PROGRESS, Progress
 
@@ -144,16 +143,3 @@ def _slices(
     rows = np.maximum.accumulate(np.where(twice, np.arange(16), -1), axis=1)[:, 8:] % 8
     ring = corner + cell * np.take_along_axis(ring, rows[:, :, None], axis=1)
     return [*np.atleast_1d(np.asarray(shapely.polygons(ring)))]
-
-
-def region_of(area: shapely.Geometry) -> Region:
-    """Return a shapely area of straight edges as a region; what is smaller than noise is left out."""
-    curves = []
-    for polygon in shapely.get_parts(area):
-        if polygon.geom_type == "Polygon" and polygon.area > tolerance.AREA:
-            curves += [
-                Curve.polygon(np.asarray(ring.coords)[:-1])
-                for ring in (polygon.exterior, *polygon.interiors)
-                if shapely.Polygon(ring).area > tolerance.AREA
-            ]
-    return Region.of(curves)

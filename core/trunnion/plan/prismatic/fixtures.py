@@ -1,0 +1,214 @@
+"""What fixtures keep a cutter from, seen along the tool: it is cut off a plane drive before passes are laid.
+
+Below its top a fixture is taken as solid down to the table: no upright tool gets under a clamp. A fixture that is nowhere higher than the
+blank's underside carries the blank, and a cutter may come down to it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Finding, face_tags, warning
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
+from trunnion.geometry.plane.shadow import shadow_above
+from trunnion.model.blank import Blank
+from trunnion.model.fixture import Fixture
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
+
+SMALLEST = 1.0
+"""mm2: less that is cut off needs no word."""
+SPACING = 0.5
+"""mm between the positions of a wall that are looked at."""
+KEPT_OFF = "fixture.kept-off"
+"""Code of the finding on what a fixture keeps a cutter from."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Lost:
+    """What is cut off a level: mm2 in plan and of walls, a place there (3,) in the setup's frame, and the region that is kept out of."""
+
+    plan: float
+    walls: float
+    at: Floats
+    out: Region
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldFixture:
+    """A fixture in a setup's frame: corners (t, 3, 3) of its triangles that are seen from above, its top, and the height `foot` up to
+    which it carries the blank."""
+
+    name: str
+    corners: Floats
+    top: float
+    foot: float
+    _shadows: dict[float, Region] = field(init=False, repr=False, default_factory=dict)
+
+    @staticmethod
+    def of(fixture: Fixture, setup: Setup, blank: Blank) -> HeldFixture:
+        """Return a fixture as it stands in a setup."""
+        corners = setup.frame.to_local(fixture.mesh.corners().reshape(-1, 3)).reshape(-1, 3, 3)
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        seen = np.abs(across[:, 2]) > tolerance.PARAMETRIC * np.linalg.norm(across, axis=1)
+        foot = float(blank.box_in(setup.frame)[0][2]) + tolerance.SEW
+        return HeldFixture(fixture.name, corners[seen], float(corners[:, :, 2].max()), foot)
+
+    def keeps_out(self, tool: Tool, z: float) -> Region:
+        """Return what the envelope of an upright cutter must stay out of, its tip at a height or higher, for all of the tool to keep
+        its room from the fixture."""
+        found = []
+        for above, radius in tool_rings(tool):
+            height = max(z + above - tolerance.FIXTURE_ROOM, self.foot)
+            if self.top > height + tolerance.COINCIDENT:
+                more = radius - tool.radius + tolerance.FIXTURE_ROOM
+                found.append(self._over(height).offset(more))
+        return union_all(found) if found else EMPTY_REGION
+
+    def changes(self, tool: Tool) -> list[float]:
+        """Return the heights of the tip over which less of the tool is beside the fixture than below."""
+        if self.top <= self.foot:
+            return []
+        return [self.top + tolerance.FIXTURE_ROOM - above for above, _ in tool_rings(tool)]
+
+    def _over(self, z: float) -> Region:
+        if z not in self._shadows:
+            self._shadows[z] = shadow_above(self.corners, z)
+        return self._shadows[z]
+
+
+def tool_rings(tool: Tool) -> list[tuple[float, float]]:
+    """Return from which height above the tip a tool is how wide: (mm, radius in mm) of the cutter and of all that is wider."""
+    wider = [
+        (z0, max(r0, r1))
+        for z0, r0, _, r1 in tool.profile()
+        if max(r0, r1) > tool.radius + tolerance.COINCIDENT
+    ]
+    return [(0.0, tool.radius), *wider]
+
+
+def off_fixtures(
+    drive: PlaneDrive, tool: Tool, setup: Setup, fixtures: Sequence[HeldFixture]
+) -> tuple[PlaneDrive, tuple[Finding, ...]]:
+    """Return a drive without what fixtures, as they stand in its setup, keep a cutter from, and a finding that names it.
+
+    Levels are parted where less of the tool is beside a fixture: over a low clamp all is cut that was wanted.
+    """
+    levels = [part for level in drive.levels for part in _parted(level, fixtures, tool)]
+    cut = [_cut(level, fixtures, tool) for level in levels]
+    floors = tuple(
+        replace(f, region=f.region.minus(_keep_out(fixtures, tool, f.z, f.region)))
+        for f in drive.floors
+    )
+    lost = [
+        _lost(level, was, drive, tool, _keep_out(fixtures, tool, was.bottom, was.boundary))
+        for level, was in zip(cut, levels, strict=True)
+    ]
+    kept = replace(drive, levels=tuple(cut), floors=tuple(f for f in floors if f.region))
+    return kept, _findings(drive, [one for one in lost if one], fixtures, tool, setup)
+
+
+def kept_off(
+    what: str, size: str, by: Iterable[str], tool: Tool, at: Floats, where: Sequence[str]
+) -> Finding:
+    """Return the finding on what of something fixtures keep a cutter from, its size in words; `at` (3,) is there, in the part's
+    coordinates."""
+    x, y, z = (float(v) + 0.0 for v in at)
+    return warning(
+        KEPT_OFF,
+        f"{size} of {what} at x {x:.1f} y {y:.1f} z {z:.1f} are left out: fixture {', '.join(by)} is in the way of {tool.name}",
+        *where,
+        remedy="move the fixture, or finish what it covers in another setup",
+    )
+
+
+def _parted(level: DriveLevel, fixtures: Sequence[HeldFixture], tool: Tool) -> list[DriveLevel]:
+    low, high = level.bottom + tolerance.SEW, level.top - tolerance.SEW
+    near = [f for f in fixtures if f.keeps_out(tool, level.bottom).intersect(level.boundary)]
+    heights = sorted({z for f in near for z in f.changes(tool) if low < z < high}, reverse=True)
+    ends = [level.top, *heights, level.bottom]
+    return [
+        replace(level, top=a, bottom=b) if heights else level for a, b in itertools.pairwise(ends)
+    ]
+
+
+def _cut(level: DriveLevel, fixtures: Sequence[HeldFixture], tool: Tool) -> DriveLevel:
+    out = _keep_out(fixtures, tool, level.bottom, level.boundary)
+    if not out:
+        return level
+    return replace(level, wanted=level.wanted.minus(out), boundary=level.boundary.minus(out))
+
+
+def _keep_out(fixtures: Sequence[HeldFixture], tool: Tool, z: float, near: Region) -> Region:
+    """Return what all fixtures keep a cutter out of at a height, those that don't come to a region left out."""
+    found = [f.keeps_out(tool, z) for f in fixtures]
+    found = [r for r in found if r and r.intersect(near)]
+    return union_all(found) if found else EMPTY_REGION
+
+
+def _lost(
+    level: DriveLevel, was: DriveLevel, drive: PlaneDrive, tool: Tool, out: Region
+) -> Lost | None:
+    """Return what is cut off a level: of its plan area, and of the walls along which the axis would be too near to a fixture."""
+    if not out:
+        return None
+    plan, walls = was.wanted.minus(level.wanted), 0.0
+    near, points = out.offset(tool.radius), []
+    for guide in drive.walls:
+        height = min(guide.top, was.top) - max(guide.bottom, was.bottom)
+        point, left, step = _spread(guide.curve)
+        met = near.contains(point + tool.radius * left) if height > 0.0 else np.zeros(0, bool)
+        if met.any():
+            walls += step * int(met.sum()) * height
+            points.append(point[met])
+    if plan:
+        points.append(np.array(plan.box()))
+    if not points or max(plan.area, walls) < SMALLEST:
+        return None
+    found = np.concatenate(points)
+    middle = 0.5 * (found.min(axis=0) + found.max(axis=0))
+    return Lost(plan=plan.area, walls=walls, at=np.append(middle, level.bottom), out=out)
+
+
+def _spread(curve: Curve) -> tuple[Floats, Floats, float]:
+    """Return positions (k, 2) spread evenly along a curve, the normals (k, 2) to its left there, and how far they are apart in mm."""
+    seg = curve.segments()
+    count = max(1, math.ceil(curve.length / SPACING))
+    s, ends = (np.arange(count) + 0.5) * (curve.length / count), np.cumsum(seg.length)
+    rows = np.minimum(np.searchsorted(ends, s), len(seg) - 1)
+    along = s - (ends[rows] - seg.length[rows])
+    direction = seg.directions(rows, along)
+    return (
+        seg.at(rows, along),
+        np.column_stack([-direction[:, 1], direction[:, 0]]),
+        curve.length / count,
+    )
+
+
+def _findings(
+    drive: PlaneDrive,
+    lost: Sequence[Lost],
+    fixtures: Sequence[HeldFixture],
+    tool: Tool,
+    setup: Setup,
+) -> tuple[Finding, ...]:
+    """Return one finding on what is cut off a drive, none where nothing is."""
+    if not lost:
+        return ()
+    most = max(lost, key=lambda one: one.plan + one.walls)
+    plan, walls = max(one.plan for one in lost), sum(one.walls for one in lost)
+    sizes = [f"{plan:.0f} mm2 in plan"] if plan >= SMALLEST else []
+    sizes += [f"{walls:.0f} mm2 of walls"] if walls >= SMALLEST else []
+    by = [f.name for f in fixtures if f.keeps_out(tool, float(most.at[2])).intersect(most.out)]
+    where = (drive.feature, *face_tags(drive.faces))
+    at = setup.frame.to_world(most.at)
+    return (kept_off(drive.feature, " and ".join(sizes), by, tool, at, where),)
