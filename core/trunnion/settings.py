@@ -42,6 +42,8 @@ class Declared:
     choices: tuple[str, ...]
     catalogue: str
     """The catalogue whose names may be given: materials, machines, tools or plans; empty for anything else."""
+    files: tuple[str, ...] = ()
+    """Endings of the files that may be named, with their dots; empty where it is no file."""
 
     def allowed(self) -> str:
         """Return in words what values may be given."""
@@ -91,10 +93,12 @@ def setting(
     help: str,
     choices: tuple[str, ...] = (),
     catalogue: str = "",
+    files: tuple[str, ...] = (),
 ) -> Any:
     """Return the dataclass field of one setting. A number needs `unit` ("" where it counts), `low` and `high`.
 
-    A name of a thing in a catalogue (`materials`, `machines`, `tools`, `plans`) says which, and forms offer what there is.
+    A name of a thing in a catalogue (`materials`, `machines`, `tools`, `plans`) says which, and forms offer what there is;
+    the name of a file says by `files` which endings it may have, and forms let a person choose it.
     """
     return dataclasses.field(
         default=default,
@@ -107,6 +111,7 @@ def setting(
                 "help": help,
                 "choices": choices,
                 "catalogue": catalogue,
+                "files": files,
             }
         },
     )

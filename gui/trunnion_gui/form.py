@@ -11,6 +11,7 @@ from PySide6.QtWidgets import (
     QComboBox,
     QCompleter,
     QDoubleSpinBox,
+    QFileDialog,
     QGridLayout,
     QLabel,
     QLineEdit,
@@ -22,6 +23,7 @@ from PySide6.QtWidgets import (
 from trunnion.settings import Declared, Value
 from trunnion.units import trimmed
 from trunnion_gui.i18n import tr
+from trunnion_gui.look import icons
 
 _WIDEST = 10**9
 _FIELD_WIDTH = 138
@@ -158,8 +160,30 @@ def make_field(setting: Declared) -> QWidget:
         return choice
     if setting.kind in (int, float):
         return _number(setting)
+    if setting.files:
+        return _file(setting)
     line = QLineEdit()
     line.setFixedWidth(_FIELD_WIDTH)
+    return line
+
+
+def _file(setting: Declared) -> QLineEdit:
+    """Return a line for the name of a file, with a button that lets a person choose it."""
+    line = QLineEdit()
+    line.setFixedWidth(_FIELD_WIDTH)
+    line.setClearButtonEnabled(True)
+    patterns = " ".join(f"*{ending}" for ending in setting.files)
+
+    def choose() -> None:
+        title, kinds = tr(setting.label), f"{tr(setting.label)} ({patterns})"
+        chosen, _ = QFileDialog.getOpenFileName(line.window(), title, line.text(), kinds)
+        if chosen:
+            line.setText(chosen)
+            line.editingFinished.emit()
+
+    action = line.addAction(icons.icon("open"), QLineEdit.ActionPosition.TrailingPosition)
+    action.setToolTip(tr("Choose a file"))
+    action.triggered.connect(choose)
     return line
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog, QToolButton
 
 from trunnion.pipeline import Engine
 from trunnion.settings import declared
@@ -63,3 +64,26 @@ def test_every_field_says_what_it_does(qtbot):
             d.help in form.field(d.key).toolTip() and d.key in form.field(d.key).toolTip()
             for d in declared(group)
         )
+
+
+def test_a_file_is_chosen_by_a_button_in_its_line(qtbot, monkeypatch, tmp_path):
+    setting = next(d for _, group in GROUPS for d in declared(group) if d.key == "blank.file")
+    form = Form((setting,))
+    qtbot.addWidget(form)
+    form.show()
+    asked, told = [], []
+    form.changed.connect(lambda key, value, gesture: told.append((key, value)))
+    chosen = str(tmp_path / "casting.stl")
+
+    def dialog(parent, title, start, kinds):
+        asked.append(kinds)
+        return (chosen if len(asked) == 1 else "", "")
+
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", dialog)
+    field = form.field(setting.key)
+    button = next(b for b in field.findChildren(QToolButton) if b.toolTip() == "Choose a file")
+    QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+    assert told == [("blank.file", chosen)] and read(field) == chosen
+    assert all(ending in asked[0] for ending in setting.files)
+    QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+    assert read(field) == chosen and len(told) == 1

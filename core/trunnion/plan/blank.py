@@ -66,6 +66,7 @@ class BlankSettings:
     file: str = setting(
         "",
         label="File of the blank",
+        files=(".step", ".stp", ".iges", ".igs", ".stl"),
         help="STEP, IGES or STL file of a blank of kind file, in the part's coordinates.",
     )
     material: str = setting(
