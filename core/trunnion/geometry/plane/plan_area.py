@@ -14,7 +14,7 @@ LAP, EVEN = 1e-3, 0.02
 """mm: how far pieces of a shadow lap over one another, and how far its rim is evened."""
 
 
-def shadow_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
+def plan_area_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
     """Return the plan area of what triangles, corners (t, 3, 3), have above a height, each grown by some mm and the rim evened outwards.
 
     Of a closed mesh that is the plan area of all that it encloses there.
