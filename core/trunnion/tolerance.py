@@ -46,7 +46,7 @@ SKIN_CHORD = 5e-4
 HOLDER_CLEARANCE = 0.2
 """How far neck, shank and holder of a leaning tool are kept from part and fixtures: what a machine's five axes may add up to."""
 
-FIXTURE_ROOM = 1.0
+FIXTURE_CLEARANCE = 1.0
 """How far planners keep all of a tool from fixtures, beside and over them: clamps are not placed as exactly as parts are."""
 
 CONTACT_BOUND = 2e-3

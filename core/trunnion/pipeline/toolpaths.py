@@ -140,7 +140,8 @@ def _make_one(
             kept = OperationPath(
                 operation=operation.id, path=path, findings=tuple(planned.findings), key=key
             )
-        kept = replace(kept, findings=_with(driven.findings, kept.findings))
+        if driven.findings:
+            kept = replace(kept, findings=_with(driven.findings, kept.findings))
     except Refused as reason:
         refusal = error(
             "toolpath.refused",

@@ -25,7 +25,7 @@ from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.prismatic.drive import PlaneDrive
-from trunnion.plan.prismatic.fixtures import HeldFixture, off_fixtures
+from trunnion.plan.prismatic.fixtures import PlanFixture, off_fixtures
 from trunnion.progress import Progress
 from trunnion.registry import PLANNERS
 from trunnion.settings import Value, checked, choose, digest
@@ -204,7 +204,7 @@ def driven_by(
     setup = driven.setup
     fixtures = scene.once(
         ("fixtures", digest(setup.frame)),
-        lambda: tuple(HeldFixture.of(f, setup, scene.blank) for f in scene.fixtures),
+        lambda: tuple(PlanFixture.of(f, setup, scene.blank) for f in scene.fixtures),
     )
     drive, findings = off_fixtures(driven.drive, operation.cutter, setup, fixtures)
     return replace(driven, drive=drive, identity=(driven.identity, drive), findings=findings)

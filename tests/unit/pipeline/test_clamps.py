@@ -54,7 +54,7 @@ def test_a_panel_with_a_clamp_at_its_border_is_released(opened, box):
     assert session.verdict.outcome in (Outcome.PASSED, Outcome.REMARKS)
     assert session.verdict.collisions == 0
     assert 0.99 <= session.verdict.coverage < 0.999
-    assert min(rooms(session, box).values()) > tolerance.FIXTURE_ROOM - 1e-3
+    assert min(rooms(session, box).values()) > tolerance.FIXTURE_CLEARANCE - 1e-3
 
 
 def test_what_the_clamp_covers_is_named_with_place_and_clamp(opened):
@@ -75,7 +75,7 @@ def test_over_a_low_clamp_the_top_is_faced_as_a_whole(opened):
 
 def test_rapids_rise_over_a_tower(opened):
     session = programmed(opened, TOWER, "toolpath")
-    assert min(rooms(session, TOWER).values()) > tolerance.FIXTURE_ROOM - 1e-3
+    assert min(rooms(session, TOWER).values()) > tolerance.FIXTURE_CLEARANCE - 1e-3
 
 
 def test_another_clamp_makes_the_toolpaths_stale(opened):

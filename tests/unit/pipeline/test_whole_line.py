@@ -220,7 +220,7 @@ def test_a_program_edited_by_hand_is_judged_by_what_it_says(line, tmp_path):
     assert judged.verdict.gouge == pytest.approx(0.05, abs=0.002)
 
 
-def test_a_clamp_in_the_way_fails_the_proof_and_leaves_the_plan_as_it_is(line, tmp_path):
+def test_a_clamp_in_the_way_makes_the_toolpaths_stale_and_is_avoided(line, tmp_path):
     engine, session, _ = line
     low = session.part.low
     corners = [low + [x, y, z] for z in (0.0, 60.0) for y in (60.0, 100.0) for x in (-30.0, 5.0)]
@@ -234,10 +234,12 @@ def test_a_clamp_in_the_way_fails_the_proof_and_leaves_the_plan_as_it_is(line, t
     (tmp_path / "clamp.stl").write_text("solid clamp\n" + "\n".join(rows))
     clamped = engine.with_fixtures(session, [str(tmp_path / "clamp.stl")])
     stale = [name for name, state in engine.states(clamped).items() if state != "done"]
-    assert stale == ["verify", "repair"]
-    failed = engine.run(clamped)
-    assert failed.verdict.outcome is Outcome.FAILED
-    assert {"verify.fixture"} == {f.code for f in failed.verdict.findings if f.severity == "error"}
+    assert stale == ["toolpath", "verify", "repair"]
+    failed = engine.run(clamped, until="verify")
+    # What it covers is named and missing, nothing touches it.
+    assert failed.verdict.outcome is Outcome.FAILED and failed.verdict.collisions == 0
+    assert {"verify.coverage"} == {f.code for f in failed.verdict.findings if f.severity == "error"}
+    assert "fixture.kept-off" in {f.code for f in failed.findings()}
     with pytest.raises(BadInput, match="clamp is for setup S7; the part has S1"):
         engine.run(engine.with_fixtures(session, [f"S7={tmp_path / 'clamp.stl'}"]))
 

@@ -12,19 +12,19 @@ from clamps import clamp
 from surface_forms import plane
 from trunnion import tolerance
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import Region
-from trunnion.geometry.plane.shadow import shadow_above
 from trunnion.model.blank import Box
 from trunnion.model.setup import Setup
-from trunnion.plan.freeform.fixtures import ThickFixture, area_of, off_fixtures, with_fixtures
+from trunnion.plan.freeform.fixtures import OffsetFixture, area_of, off_fixtures, with_fixtures
 from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.prismatic import fixtures
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.plan.setups import held
-from trunnion.toolpath.motion.obstacles import Obstacles
+from trunnion.toolpath.motion.fixture_links import FixtureSurface
 from verify_tools import tool_of
 
-ROOM = tolerance.FIXTURE_ROOM
+ROOM = tolerance.FIXTURE_CLEARANCE
 BLANK = Box(
     frame=WORLD,
     low=np.array([0.0, 0.0, 0.0]),
@@ -54,7 +54,7 @@ def drive(**changes):
 
 
 def cut(setup, tool=D10, **changes):
-    standing = [fixtures.HeldFixture.of(f, setup, BLANK) for f in setup.fixtures]
+    standing = [fixtures.PlanFixture.of(f, setup, BLANK) for f in setup.fixtures]
     return fixtures.off_fixtures(drive(**changes), tool, setup, standing)
 
 
@@ -120,26 +120,26 @@ def test_walls_that_a_clamp_covers_are_told():
 
 def test_a_shadow_is_what_a_mesh_has_above_a_height():
     corners = clamp((0, 0, 0), (10, 5, 8)).mesh.corners()
-    assert shadow_above(corners, 4.0).area == approx(50.0, abs=1.0)
-    assert not shadow_above(corners, 8.0)
+    assert plan_area_above(corners, 4.0).area == approx(50.0, abs=1.0)
+    assert not plan_area_above(corners, 8.0)
 
 
 @pytest.mark.parametrize(("x", "expected"), [(-60.0, -math.inf), (-30.0, -169.0), (-10.0, 31.0)])
 def test_links_go_over_a_clamp(x, expected):
     # The clamp's top with its room; beside it only the holder, 200 mm up and 20 in radius, is over it.
-    obstacles = Obstacles.of(setup_with(clamp((-20, 20, 0), (0, 40, 30))))
+    obstacles = FixtureSurface.of(setup_with(clamp((-20, 20, 0), (0, 40, 30))))
     assert obstacles.lowest_tip(D10, np.array([x, 30.0]), np.array([x, 30.0])) == approx(expected)
 
 
 def test_a_link_beside_a_clamp_is_held_up_on_its_way():
-    obstacles = Obstacles.of(setup_with(clamp((-20, 20, 0), (0, 40, 30))))
+    obstacles = FixtureSurface.of(setup_with(clamp((-20, 20, 0), (0, 40, 30))))
     ends = np.array([-10.0, -30.0]), np.array([-10.0, 90.0])
     assert [obstacles.lowest_tip(D10, p, p) for p in ends] == [-math.inf, -math.inf]
     assert obstacles.lowest_tip(D10, *ends) == approx(31.0)
 
 
 def test_a_box_is_thicker_all_round_by_its_room():
-    made = ThickFixture.of(clamp((0, 0, 0), (10, 5, 8)), SETUP, BLANK)
+    made = OffsetFixture.of(clamp((0, 0, 0), (10, 5, 8)), SETUP, BLANK)
     assert made.corners.reshape(-1, 3).min(axis=0) == approx([-ROOM, -ROOM, 0.0])
     assert made.corners.reshape(-1, 3).max(axis=0) == approx([10 + ROOM, 5 + ROOM, 8 + ROOM])
 
@@ -149,12 +149,12 @@ def test_of_a_plane_beside_a_clamp_what_the_cutter_cannot_reach_is_left_out():
     low, high = skin.box()
     blank = Box(frame=WORLD, low=low - [0, 0, 9], high=high + [0, 0, 1], material="", density=2.8)
     block = clamp((low[0] - 10, -90, low[2] - 9), (low[0], 90, high[2] + 20))
-    thick = (ThickFixture.of(block, SETUP, blank),)
-    kept, tags, left_out = off_fixtures(skin, (1,), D10, thick, -50.0, 0.01)
+    thick = (OffsetFixture.of(block, SETUP, blank),)
+    kept, tags, refused = off_fixtures(skin, (1,), D10, thick, -50.0, 0.01)
     whole = area_of(skin, (1,))
     # A flat cutter's axis stays 6 mm off, where it touches the plane at its rim: what lies nearer than that is left out.
-    assert left_out.by == ("clamp",) and left_out.area == approx(whole - area_of(kept, tags))
-    assert 0.0 < left_out.area < 0.5 * whole
+    assert refused.by == ("clamp",) and refused.area == approx(whole - area_of(kept, tags))
+    assert 0.0 < refused.area < 0.5 * whole
     standing = with_fixtures(kept, thick)
     assert standing.drop.drop(np.array([[low[0] - 5.0, 0.0]]), np.zeros((1, 6)), -50.0) == approx(
         high[2] + 20 + ROOM

@@ -32,26 +32,26 @@ MOST_MITRE = 3.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ThickFixture:
+class OffsetFixture:
     """A fixture in a cutting frame, thicker by its room: corners (t, 3, 3) of its triangles."""
 
     name: str
     corners: Floats
 
     @staticmethod
-    def of(fixture: Fixture, setup: Setup, blank: Blank) -> ThickFixture:
+    def of(fixture: Fixture, setup: Setup, blank: Blank) -> OffsetFixture:
         """Return a fixture as it stands in a setup, thicker all round in plan and as much higher where it is over the blank's underside."""
         foot = float(blank.box_in(setup.frame)[0][2]) + tolerance.SEW
         # Corners that coincide are one: then the edges of a box go out as a whole.
         points, triangles = welded(fixture.mesh, tolerance.COINCIDENT)
         points = setup.frame.to_local(points)
         thick = points + _outwards(points, triangles)
-        thick[points[:, 2] > foot, 2] += tolerance.FIXTURE_ROOM
-        return ThickFixture(fixture.name, np.concatenate([points[triangles], thick[triangles]]))
+        thick[points[:, 2] > foot, 2] += tolerance.FIXTURE_CLEARANCE
+        return OffsetFixture(fixture.name, np.concatenate([points[triangles], thick[triangles]]))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class KeptOff:
+class RefusedArea:
     """What fixtures keep a cutter from: an area in mm2 of faces, the fixtures' names, and a place there (3,) in the cutting frame."""
 
     area: float
@@ -75,7 +75,7 @@ def _outwards(points: Floats, triangles: Ints) -> Floats:
     way = np.einsum("vij,vj->vi", inverse, sums)
     size = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1.0)
     out = np.zeros_like(points)
-    out[:, :2] = tolerance.FIXTURE_ROOM * way * np.minimum(1.0, MOST_MITRE / size)
+    out[:, :2] = tolerance.FIXTURE_CLEARANCE * way * np.minimum(1.0, MOST_MITRE / size)
     return out
 
 
@@ -83,11 +83,11 @@ def off_fixtures(
     skin: Skin,
     tags: tuple[int, ...],
     tool: Tool,
-    fixtures: Sequence[ThickFixture],
+    fixtures: Sequence[OffsetFixture],
     lowest: float,
     height: float,
     progress: Progress = NO_PROGRESS,
-) -> tuple[Skin, tuple[int, ...], KeptOff | None]:
+) -> tuple[Skin, tuple[int, ...], RefusedArea | None]:
     """Return the skin and the tags of what of faces an upright tool finishes with all of it beside or over fixtures, and what is left
     out, None where nothing is; `height` is the scallop height in mm that is wanted."""
     surface = _surface(fixtures)
@@ -121,10 +121,10 @@ def off_fixtures(
         and (f.corners[..., :2] >= low[:2] - wide).all(axis=2).any()
     )
     area = whole - area_of(met_skin, left)
-    return met_skin, left, KeptOff(area=area, by=by, at=0.5 * (low + high))
+    return met_skin, left, RefusedArea(area=area, by=by, at=0.5 * (low + high))
 
 
-def with_fixtures(skin: Skin, fixtures: Sequence[ThickFixture]) -> Skin:
+def with_fixtures(skin: Skin, fixtures: Sequence[OffsetFixture]) -> Skin:
     """Return a skin with fixtures that stand in it: cutters are lifted over them, and they are no face's."""
     corners = np.concatenate([f.corners for f in fixtures])
     points = corners.reshape(-1, 3)
@@ -151,6 +151,6 @@ def area_of(skin: Skin, tags: tuple[int, ...]) -> float:
     return float(0.5 * np.linalg.norm(across, axis=1).sum())
 
 
-def _surface(fixtures: Sequence[ThickFixture]) -> DropSurface:
+def _surface(fixtures: Sequence[OffsetFixture]) -> DropSurface:
     points = np.concatenate([f.corners.reshape(-1, 3) for f in fixtures])
     return DropSurface.of(points, np.arange(len(points)).reshape(-1, 3))

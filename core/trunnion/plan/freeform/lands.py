@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
-from trunnion.geometry.plane.shadow import shadow_above
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc
@@ -100,7 +100,7 @@ class PartAbove:
         )
         if not hangs.any():
             return EMPTY_REGION
-        return shadow_above(corners[hangs], z, 2.0 * skin.bound)
+        return plan_area_above(corners[hangs], z, 2.0 * skin.bound)
 
     def free(self, z: float, tool: Tool, clearances: LandClearances) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank

@@ -20,7 +20,7 @@ from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.finishing.rest import remaining_of, without_met
-from trunnion.plan.freeform.fixtures import KeptOff, ThickFixture, off_fixtures, with_fixtures
+from trunnion.plan.freeform.fixtures import OffsetFixture, RefusedArea, off_fixtures, with_fixtures
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
 from trunnion.plan.prismatic.fixtures import kept_off
@@ -45,7 +45,7 @@ class SurfaceSpace:
     skin: Skin
     low: Floats
     high: Floats
-    _thick: list[ThickFixture] = field(init=False, repr=False, default_factory=list)
+    _thick: list[OffsetFixture] = field(init=False, repr=False, default_factory=list)
 
     @staticmethod
     def of(
@@ -69,11 +69,11 @@ class SurfaceSpace:
         """The cutting frame."""
         return self.setup.frame
 
-    def fixtures(self) -> Sequence[ThickFixture]:
+    def fixtures(self) -> Sequence[OffsetFixture]:
         """Return the fixtures of the setup as they stand in the cutting frame."""
         if len(self._thick) < len(self.setup.fixtures):
             self._thick[:] = [
-                ThickFixture.of(f, self.setup, self.blank) for f in self.setup.fixtures
+                OffsetFixture.of(f, self.setup, self.blank) for f in self.setup.fixtures
             ]
         return self._thick
 
@@ -118,9 +118,9 @@ class SurfaceSpace:
             skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress)
         if not needs.leans:
             skin, faces = without_met(skin, faces, operation.cutter, lowest, height, progress)
-        fixtures, left_out = self.fixtures(), None
+        fixtures, refused = self.fixtures(), None
         if fixtures and not needs.leans:
-            skin, faces, left_out = off_fixtures(
+            skin, faces, refused = off_fixtures(
                 skin, faces, operation.cutter, fixtures, lowest, height, progress
             )
         if fixtures:
@@ -156,12 +156,12 @@ class SurfaceSpace:
             digest=identity,
             earlier=earlier,
             query_for=query_for,
-            findings=() if left_out is None else (self._finding(operation, left_out),),
+            findings=() if refused is None else (self._finding(operation, refused),),
         )
 
-    def _finding(self, operation: Operation, left_out: KeptOff) -> Finding:
-        at = self.frame.to_world(left_out.at)
+    def _finding(self, operation: Operation, refused: RefusedArea) -> Finding:
+        at = self.frame.to_world(refused.at)
         where = (operation.feature, *face_tags(operation.faces))
         return kept_off(
-            operation.feature, f"{left_out.area:.0f} mm2", left_out.by, operation.cutter, at, where
+            operation.feature, f"{refused.area:.0f} mm2", refused.by, operation.cutter, at, where
         )

@@ -17,8 +17,8 @@ from trunnion import tolerance
 from trunnion.findings import Finding, face_tags, warning
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
-from trunnion.geometry.plane.shadow import shadow_above
 from trunnion.model.blank import Blank
 from trunnion.model.fixture import Fixture
 from trunnion.model.setup import Setup
@@ -34,7 +34,7 @@ KEPT_OFF = "fixture.kept-off"
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Lost:
+class RefusedLevel:
     """What is cut off a level: mm2 in plan and of walls, a place there (3,) in the setup's frame, and the region that is kept out of."""
 
     plan: float
@@ -44,7 +44,7 @@ class Lost:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class HeldFixture:
+class PlanFixture:
     """A fixture in a setup's frame: corners (t, 3, 3) of its triangles that are seen from above, its top, and the height `foot` up to
     which it carries the blank."""
 
@@ -52,25 +52,25 @@ class HeldFixture:
     corners: Floats
     top: float
     foot: float
-    _shadows: dict[float, Region] = field(init=False, repr=False, default_factory=dict)
+    _areas: dict[float, Region] = field(init=False, repr=False, default_factory=dict)
 
     @staticmethod
-    def of(fixture: Fixture, setup: Setup, blank: Blank) -> HeldFixture:
+    def of(fixture: Fixture, setup: Setup, blank: Blank) -> PlanFixture:
         """Return a fixture as it stands in a setup."""
         corners = setup.frame.to_local(fixture.mesh.corners().reshape(-1, 3)).reshape(-1, 3, 3)
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         seen = np.abs(across[:, 2]) > tolerance.PARAMETRIC * np.linalg.norm(across, axis=1)
         foot = float(blank.box_in(setup.frame)[0][2]) + tolerance.SEW
-        return HeldFixture(fixture.name, corners[seen], float(corners[:, :, 2].max()), foot)
+        return PlanFixture(fixture.name, corners[seen], float(corners[:, :, 2].max()), foot)
 
     def keeps_out(self, tool: Tool, z: float) -> Region:
         """Return what the envelope of an upright cutter must stay out of, its tip at a height or higher, for all of the tool to keep
         its room from the fixture."""
         found = []
         for above, radius in tool_rings(tool):
-            height = max(z + above - tolerance.FIXTURE_ROOM, self.foot)
+            height = max(z + above - tolerance.FIXTURE_CLEARANCE, self.foot)
             if self.top > height + tolerance.COINCIDENT:
-                more = radius - tool.radius + tolerance.FIXTURE_ROOM
+                more = radius - tool.radius + tolerance.FIXTURE_CLEARANCE
                 found.append(self._over(height).offset(more))
         return union_all(found) if found else EMPTY_REGION
 
@@ -78,12 +78,12 @@ class HeldFixture:
         """Return the heights of the tip over which less of the tool is beside the fixture than below."""
         if self.top <= self.foot:
             return []
-        return [self.top + tolerance.FIXTURE_ROOM - above for above, _ in tool_rings(tool)]
+        return [self.top + tolerance.FIXTURE_CLEARANCE - above for above, _ in tool_rings(tool)]
 
     def _over(self, z: float) -> Region:
-        if z not in self._shadows:
-            self._shadows[z] = shadow_above(self.corners, z)
-        return self._shadows[z]
+        if z not in self._areas:
+            self._areas[z] = plan_area_above(self.corners, z)
+        return self._areas[z]
 
 
 def tool_rings(tool: Tool) -> list[tuple[float, float]]:
@@ -97,7 +97,7 @@ def tool_rings(tool: Tool) -> list[tuple[float, float]]:
 
 
 def off_fixtures(
-    drive: PlaneDrive, tool: Tool, setup: Setup, fixtures: Sequence[HeldFixture]
+    drive: PlaneDrive, tool: Tool, setup: Setup, fixtures: Sequence[PlanFixture]
 ) -> tuple[PlaneDrive, tuple[Finding, ...]]:
     """Return a drive without what fixtures, as they stand in its setup, keep a cutter from, and a finding that names it.
 
@@ -131,7 +131,7 @@ def kept_off(
     )
 
 
-def _parted(level: DriveLevel, fixtures: Sequence[HeldFixture], tool: Tool) -> list[DriveLevel]:
+def _parted(level: DriveLevel, fixtures: Sequence[PlanFixture], tool: Tool) -> list[DriveLevel]:
     low, high = level.bottom + tolerance.SEW, level.top - tolerance.SEW
     near = [f for f in fixtures if f.keeps_out(tool, level.bottom).intersect(level.boundary)]
     heights = sorted({z for f in near for z in f.changes(tool) if low < z < high}, reverse=True)
@@ -141,14 +141,14 @@ def _parted(level: DriveLevel, fixtures: Sequence[HeldFixture], tool: Tool) -> l
     ]
 
 
-def _cut(level: DriveLevel, fixtures: Sequence[HeldFixture], tool: Tool) -> DriveLevel:
+def _cut(level: DriveLevel, fixtures: Sequence[PlanFixture], tool: Tool) -> DriveLevel:
     out = _keep_out(fixtures, tool, level.bottom, level.boundary)
     if not out:
         return level
     return replace(level, wanted=level.wanted.minus(out), boundary=level.boundary.minus(out))
 
 
-def _keep_out(fixtures: Sequence[HeldFixture], tool: Tool, z: float, near: Region) -> Region:
+def _keep_out(fixtures: Sequence[PlanFixture], tool: Tool, z: float, near: Region) -> Region:
     """Return what all fixtures keep a cutter out of at a height, those that don't come to a region left out."""
     found = [f.keeps_out(tool, z) for f in fixtures]
     found = [r for r in found if r and r.intersect(near)]
@@ -157,7 +157,7 @@ def _keep_out(fixtures: Sequence[HeldFixture], tool: Tool, z: float, near: Regio
 
 def _lost(
     level: DriveLevel, was: DriveLevel, drive: PlaneDrive, tool: Tool, out: Region
-) -> Lost | None:
+) -> RefusedLevel | None:
     """Return what is cut off a level: of its plan area, and of the walls along which the axis would be too near to a fixture."""
     if not out:
         return None
@@ -176,7 +176,7 @@ def _lost(
         return None
     found = np.concatenate(points)
     middle = 0.5 * (found.min(axis=0) + found.max(axis=0))
-    return Lost(plan=plan.area, walls=walls, at=np.append(middle, level.bottom), out=out)
+    return RefusedLevel(plan=plan.area, walls=walls, at=np.append(middle, level.bottom), out=out)
 
 
 def _spread(curve: Curve) -> tuple[Floats, Floats, float]:
@@ -196,8 +196,8 @@ def _spread(curve: Curve) -> tuple[Floats, Floats, float]:
 
 def _findings(
     drive: PlaneDrive,
-    lost: Sequence[Lost],
-    fixtures: Sequence[HeldFixture],
+    lost: Sequence[RefusedLevel],
+    fixtures: Sequence[PlanFixture],
     tool: Tool,
     setup: Setup,
 ) -> tuple[Finding, ...]:

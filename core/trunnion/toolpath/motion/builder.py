@@ -19,7 +19,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.toolpath.motion.feed import arc_feed
-from trunnion.toolpath.motion.obstacles import Obstacles
+from trunnion.toolpath.motion.fixture_links import FixtureSurface
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 WIDEST_ARC = math.radians(200.0)
@@ -36,7 +36,7 @@ class PathBuilder:
         self.data = data
         self.clearance = setup.clearance
         self.safety = safety
-        self.obstacles = Obstacles.of(setup)
+        self.fixtures = FixtureSurface.of(setup)
         self.here: Floats | None = None
         self._stock = stock
         self._known = 0

@@ -35,9 +35,9 @@ def lowest_tip(builder: PathBuilder, start: ArrayLike, end: ArrayLike) -> float:
             lowest = max(
                 lowest, stock.height(start, end, max(r0, r1) + builder.safety) - z0 + builder.safety
             )
-    if builder.obstacles is not None:
+    if builder.fixtures is not None:
         a, b = (np.asarray(v, dtype=np.float64)[:2] for v in (start, end))
-        lowest = max(lowest, builder.obstacles.lowest_tip(tool, a, b))
+        lowest = max(lowest, builder.fixtures.lowest_tip(tool, a, b))
     return lowest
 
 

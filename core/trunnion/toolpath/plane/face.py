@@ -99,7 +99,7 @@ def face(
                 ),
             )
         )
-    box = _standing(stock, area, drive.bottom)
+    box = _remaining_box(stock, area, drive.bottom)
     if box is None:
         nothing = "what is over it has gone in an earlier setup"
         return Planned(findings=(info("face.gone", f"{drive.feature}: {nothing}", drive.feature),))
@@ -121,11 +121,11 @@ def face(
         if all(free.holds_line(row.start, row.end) for row in whole):
             _cut_rows(builder, rows, ends, z, turned, settings.pattern == "zigzag")
         else:
-            _cut_beside(builder, whole, area, free, z)
+            _cut_parts(builder, whole, area, free, z)
     return Planned(path=builder.finished())
 
 
-def _standing(stock: PlanningStock, area: Region, z: float) -> tuple[Floats, Floats] | None:
+def _remaining_box(stock: PlanningStock, area: Region, z: float) -> tuple[Floats, Floats] | None:
     """Return the box (low, high) of an area as far as stock stands over a height there; None where none does."""
     low, high = area.box()
     cells = np.argwhere(stock.heights > z + tolerance.SEW)
@@ -140,7 +140,7 @@ def _row(v: float, ends: tuple[float, float], turned: bool) -> Curve:
     return Curve.polyline([(v, u) if turned else (u, v) for u in ends])
 
 
-def _cut_beside(
+def _cut_parts(
     builder: PathBuilder, rows: list[Curve], area: Region, free: AxisRegion, z: float
 ) -> None:
     """Cut what of rows lies where the axis may be, each part from outside of an area inwards, then go along the rim of what is kept

@@ -75,8 +75,8 @@ def _lowered(
     """Return a stock without what another one, seen from elsewhere, knows to be gone; nothing is lower than `lowest`, nor the other one's
     blank than `foot`."""
     # Cut down to the blank's underside nothing is left, on either side of that height.
-    standing = np.where(other.heights > foot + tolerance.COINCIDENT, other.heights, -np.inf)
-    material = maximum_filter(standing, NEIGHBOURHOOD, mode="nearest")
+    remaining = np.where(other.heights > foot + tolerance.COINCIDENT, other.heights, -np.inf)
+    material = maximum_filter(remaining, NEIGHBOURHOOD, mode="nearest")
     positions, heights = _centres(stock), stock.heights.ravel().copy()
     step, last = stock.cell, np.array(material.shape) - 1
     rows = np.flatnonzero(heights > lowest)

@@ -14,8 +14,8 @@ import numpy as np
 import shapely
 
 from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.plane.plan_area import region_of
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
-from trunnion.geometry.plane.shadow import region_of
 from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.progress import NO_PROGRESS, Progress
 

@@ -1,4 +1,4 @@
-"""Shadows of triangles: the plan area of what they have above a height."""
+"""Plan areas of what triangles have above a height."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 
 LAP, EVEN = 1e-3, 0.02
-"""mm: how far pieces of a shadow lap over one another, and how far its rim is evened."""
+"""mm: how far pieces of an area lap over one another, and how far its rim is evened."""
 
 
-def shadow_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
+def plan_area_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
     """Return the plan area of what triangles, corners (t, 3, 3), have above a height, each grown by some mm and the rim evened outwards.
 
     Of a closed mesh that is the plan area of all that it encloses there.
@@ -30,9 +30,9 @@ def shadow_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
         ]
     )
     # Each is grown by itself: then neighbours overlap, where they would only touch along an edge that is none the same.
-    shadow = shapely.union_all(shapely.buffer(pieces, grown + LAP, quad_segs=1))
+    area = shapely.union_all(shapely.buffer(pieces, grown + LAP, quad_segs=1))
     return region_of(
-        shapely.simplify(shapely.buffer(shadow, EVEN, join_style="mitre", mitre_limit=2.0), EVEN)
+        shapely.simplify(shapely.buffer(area, EVEN, join_style="mitre", mitre_limit=2.0), EVEN)
     )
 
 

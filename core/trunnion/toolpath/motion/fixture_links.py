@@ -20,29 +20,29 @@ SPACING = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Obstacles:
+class FixtureSurface:
     """The fixtures of a setup in its frame, ready for a tool that comes down on them."""
 
     surface: DropSurface
 
     @staticmethod
-    def of(setup: Setup) -> Obstacles | None:
+    def of(setup: Setup) -> FixtureSurface | None:
         """Return the fixtures of a setup, None where it has none."""
         corners = [f.mesh.corners().reshape(-1, 3) for f in setup.fixtures]
         if not corners:
             return None
         points = setup.frame.to_local(np.concatenate(corners))
-        return Obstacles(DropSurface.of(points, np.arange(len(points)).reshape(-1, 3)))
+        return FixtureSurface(DropSurface.of(points, np.arange(len(points)).reshape(-1, 3)))
 
     def lowest_tip(self, tool: Tool, start: Floats, end: Floats) -> float:
         """Return how low the tip may go between two positions (2,), all of the tool its room away from fixtures; -inf beside them."""
         way = _along(start, end)
-        wider = tolerance.FIXTURE_ROOM + (0.5 * SPACING if len(way) > 1 else 0.0)
+        wider = tolerance.FIXTURE_CLEARANCE + (0.5 * SPACING if len(way) > 1 else 0.0)
         tips = [
             self.surface.drop(way, level_disc(radius + wider), -math.inf).max() - above
             for above, radius in tool_rings(tool)
         ]
-        return float(max(tips)) + tolerance.FIXTURE_ROOM
+        return float(max(tips)) + tolerance.FIXTURE_CLEARANCE
 
 
 def _along(start: Floats, end: Floats) -> Floats:
