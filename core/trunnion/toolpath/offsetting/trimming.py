@@ -27,15 +27,19 @@ LINK = 0.4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PassTrimming:
-    """Trims the passes of one layer: the cells (nx, ny) of the stock that are to go, and the height over which what is counts."""
+    """Trims the passes of one layer: the cells (nx, ny) of the stock that are to go, the height over which what is counts, and how deep
+    in mm the cutter's side has to enter it to count."""
 
     wanted: Bools
     z: float
+    graze: float = 0.0
 
     @staticmethod
-    def of(builder: PathBuilder, area: Region, z: float) -> PassTrimming:
-        """Return the trimming of a layer for the stock in an area that is higher than `z` before its first pass."""
-        return PassTrimming(builder.stock().cells_above(z, area), z)
+    def of(builder: PathBuilder, area: Region, z: float, graze: float = 0.0) -> PassTrimming:
+        """Return the trimming of a layer for the stock in an area that is higher than `z` before its first pass; what a pass would enter
+        by less than `graze` cells is left to the next one."""
+        stock = builder.stock()
+        return PassTrimming(stock.cells_above(z, area), z, graze * stock.cell)
 
     def parts(self, builder: PathBuilder, curve: Curve) -> list[Curve]:
         """Return the parts of a pass on which the stock, as the path so far leaves it, is before the cutter; the curve itself when
@@ -46,7 +50,7 @@ class PassTrimming:
         ends = np.cumsum(seg.length)
         rows = np.minimum(np.searchsorted(ends, s, side="right"), len(seg) - 1)
         along = seg.directions(rows, s - (ends[rows] - seg.length[rows]))
-        engaged = self._meets(stock, points, along, tool.radius)
+        engaged = self._meets(stock, points, along, tool.radius - self.graze)
         if engaged.all():
             return [curve]
         if not engaged.any():
