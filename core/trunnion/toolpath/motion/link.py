@@ -119,7 +119,7 @@ def _cross(
 ) -> None:
     """Bring the tip over a position (2,), at a height of at least `z` from which it may go down."""
     if axis_region is not None:
-        if _feeds_over(builder, position, axis_region):
+        if _feeds_over(builder, position, z, axis_region):
             return
         _off_the_wall(builder, position, axis_region)
     here = builder.here
@@ -137,13 +137,14 @@ def _lift(builder: PathBuilder, here: Floats, position: ArrayLike) -> float:
 
 
 def _feeds_over(
-    builder: PathBuilder, position: tuple[float, float], axis_region: AxisRegion
+    builder: PathBuilder, position: tuple[float, float], z: float, axis_region: AxisRegion
 ) -> bool:
-    """Feed straight over to a near position when the tool need not be lifted for it; say whether."""
+    """Feed straight over to a near position, at height `z` or above it, where a rapid would have to be lifted; say whether."""
     here = builder.here
     assert here is not None  # a way across begins where the tool is
     if (
-        np.hypot(*(position - here[:2])) > NEAR_BY * builder.safety
+        here[2] < z - tolerance.SHORT_MOVE
+        or np.hypot(*(position - here[:2])) > NEAR_BY * builder.safety
         or _lift(builder, here, position) <= 0.0
         or not is_free(builder, here, float(here[2]), position)
         or not axis_region.holds_line(here, position)

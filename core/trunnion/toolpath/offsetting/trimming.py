@@ -18,7 +18,7 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import SECONDS_PER_MINUTE
 
-MARGIN = 1.0
+MARGIN = 0.5
 """mm that a pass begins before and ends after the positions where it engages."""
 
 LINK = 0.4
