@@ -161,13 +161,13 @@ def _off_the_wall(
     here, heading = builder.here, builder.heading()
     assert here is not None  # a way across begins where the tool is
     lift = _lift(builder, here, position)
-    ways = [(lift * RAPID_COST, 0.0)]
+    tried = [(lift * RAPID_COST, 0.0)]
     for way in OFF_WALL if lift > builder.safety and heading.any() else ():
         to = here + way * np.array([*heading, 0.0])
         if not axis_region.holds_line(here, to) or not is_free(builder, here, float(here[2]), to):
             break
-        ways.append((_lift(builder, to, position) * RAPID_COST + way, way))
-    _, way = min(ways)
+        tried.append((_lift(builder, to, position) * RAPID_COST + way, way))
+    _, way = min(tried)
     if way > 0.0:
         to = here[:2] + way * heading
         builder.line((*to, here[2]), builder.data.feed, Mark.LEAD)
