@@ -195,16 +195,19 @@ def test_finishing_a_roughed_corner_goes_along_the_walls_alone() -> None:
     assert len(cuts) and np.abs(PLAN.signed_distance(cuts) - tool.radius).max() < 1e-6
 
 
-def test_rings_around_the_profile_go_only_where_the_margin_stands() -> None:
-    blank, outline = box_blank((-5, -5, -20), (105, 65, 0)), rounded(0, 0, 100, 60, 15)
+OUTLINE = rounded(0, 0, 100, 60, 15)
+
+
+def profile_roughed(tool: Tool, width: float) -> Toolpath:
+    """The blank stands 13.3 mm out of the outline's rounded corners, 5 mm out of its sides."""
     level = DriveLevel(
         top=0.0,
         bottom=-20.0,
-        wanted=Region.rectangle(-5, -5, 105, 65).minus(outline),
-        boundary=AROUND.minus(outline),
+        wanted=Region.rectangle(-5, -5, 105, 65).minus(OUTLINE),
+        boundary=AROUND.minus(OUTLINE),
     )
     guide = WallGuide(
-        curve=outline.curves()[0].reversed(), top=0.0, bottom=-20.0, fillet=0.0, faces=(7,)
+        curve=OUTLINE.curves()[0].reversed(), top=0.0, bottom=-20.0, fillet=0.0, faces=(7,)
     )
     drive = PlaneDrive(
         feature="profile-01",
@@ -213,17 +216,34 @@ def test_rings_around_the_profile_go_only_where_the_margin_stands() -> None:
         walls=(guide,),
         wall_allowance=0.3,
     )
-    tool, stock = mill(16, flute_length=30.0), PlanningStock.of(blank, SETUP)
-    path = profile_rough(
-        drive, tool, cutting(20, 5), stock, SETUP, ProfileRoughSettings(), NO_PROGRESS
-    ).path
+    stock = PlanningStock.of(box_blank((-5, -5, -20), (105, 65, 0)), SETUP)
+    data = cutting(20, width)
+    path = profile_rough(drive, tool, data, stock, SETUP, ProfileRoughSettings(), NO_PROGRESS).path
     milled = Milled((-5, -5), (105, 65), 0.0).cut(path, tool)
-    outside = outline.signed_distance(milled.points).reshape(milled.x.shape)
+    outside = OUTLINE.signed_distance(milled.points).reshape(milled.x.shape)
     assert (milled.height[outside < -0.31] == -20.0).all()
     assert milled.crashes == []
-    # The blank stands 13 mm out of the rounded corners, 5 mm out of the sides: the two outer rings are four short arcs each.
+    return path
+
+
+def farthest_ring(path: Toolpath, tool: Tool) -> float:
+    cuts = path.position[path.mark == Mark.CUT, :2]
+    return float(-OUTLINE.signed_distance(cuts).min()) - tool.radius
+
+
+def test_rings_around_the_profile_go_only_where_the_margin_stands() -> None:
+    tool = mill(16, flute_length=30.0)
+    path = profile_roughed(tool, 5.0)
+    assert farthest_ring(path, tool) == pytest.approx(10.3, abs=0.01)
+    # The two outer rings are four short arcs each.
     way = path.lengths()[path.mark == Mark.CUT].sum()
-    assert way < 1.75 * (guide.curve.length + 2.0 * np.pi * (tool.radius + 0.3))
+    around = sum(c.length for c in OUTLINE.offset(tool.radius + 0.3).curves())
+    assert way < 1.75 * around
+
+
+def test_a_ring_that_would_cut_hardly_anything_is_left_to_the_next_one() -> None:
+    tool = mill(16, flute_length=30.0)
+    assert farthest_ring(profile_roughed(tool, 6.0), tool) == pytest.approx(6.3, abs=0.01)
 
 
 def test_facing_goes_to_the_next_row_at_rapid() -> None:

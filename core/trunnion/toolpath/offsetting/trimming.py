@@ -58,6 +58,15 @@ class PassTrimming:
         gap = LINK * builder.data.feed / SECONDS_PER_MINUTE
         return _parts(curve, s, engaged, curve.length, MARGIN + stock.cell, gap)
 
+    def area(self, builder: PathBuilder, curve: Curve) -> float:
+        """Return the area in mm2 of the stock that a pass would meet."""
+        stock = builder.stock()
+        rows = np.argwhere(self.wanted & (stock.heights > self.z))
+        if not len(rows):
+            return 0.0
+        away = curve.distance(stock.corner + (rows + 0.5) * stock.cell)
+        return float((away < builder.tool.radius).sum()) * stock.cell**2
+
     def _meets(self, stock: PlanningStock, points: Floats, along: Floats, radius: float) -> Bools:
         """Return for positions (k, 2) of a cutter with directions (k, 2) whether stock lies under the front half of its rim."""
         count = max(2, int(np.ceil(np.pi * radius / stock.cell)))

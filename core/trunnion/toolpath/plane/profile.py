@@ -44,6 +44,9 @@ SMALLEST_LEFTOVER = 1.0
 WORTH = 0.1
 """mm: stock of the blank's margin that stands no higher over a layer is not worth a pass in it."""
 
+LITTLE = 0.25
+"""mm on the mean of a diameter's way: the next ring takes so much more, where that is all a ring would cut at a corner of the blank."""
+
 GRAZE = 0.5
 """Cells of the stock that a pass may leave before the next one: the blank's edge goes through cells, a pass along it cuts nothing."""
 
@@ -127,6 +130,7 @@ def profile_rough(
                     axis_region,
                     approach,
                     _outside(boundary, stock, drive.wall_allowance),
+                    0.0 if distance == distances[-1] else LITTLE * tool.diameter,
                 )
         findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
@@ -189,12 +193,15 @@ def _cut_over_stock(
     axis_region: AxisRegion,
     approach: ContourApproach,
     margin: Region,
+    least: float,
 ) -> None:
-    """Cut passes at height `z`, the nearest next, where stock of the blank's margin stands before the cutter."""
+    """Cut passes at height `z`, the nearest next, where more than `least` mm2 of the blank's margin stands before the cutter."""
     trimming = PassTrimming.of(builder, margin, z + WORTH, GRAZE)
     shorter = replace(approach, radius=min(approach.radius, ASIDE))
     for whole in nearest_first(passes, lambda: builder.here, curve_away):
         parts = trimming.parts(builder, whole)
+        if least > 0.0:
+            parts = [part for part in parts if trimming.area(builder, part) > least]
         if parts == [whole]:
             cut_parts(builder, parts, z, axis_region, approach)
         else:
