@@ -66,7 +66,8 @@ def test_facing_turns_outside_the_blank() -> None:
     path = face(
         facing(10), mill(40), cutting(2.0, 24.0), STOCK, SETUP, FaceSettings(), NO_PROGRESS
     ).path
-    turns = path.position[path.motion >= Motion.ARC_CW, 0]
+    across = np.abs(path.position - path.starts())[:, 1] > 0.0
+    turns = path.position[across, 0]
     assert len(turns) and ((turns < -5 - 20) | (turns > 85 + 20)).all()
 
 

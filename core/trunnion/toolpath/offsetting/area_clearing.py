@@ -18,7 +18,7 @@ from trunnion.model.motion.toolpath import Mark
 from trunnion.progress import Progress
 from trunnion.toolpath.axis_region import AxisRegion, parts_near
 from trunnion.toolpath.motion.builder import PathBuilder
-from trunnion.toolpath.motion.link import is_free, step_aside, top_under, travel
+from trunnion.toolpath.motion.link import descent, is_free, step_aside, top_under, travel
 from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting.entry import (
     deepest_position,
@@ -139,7 +139,7 @@ def _cut_closed(
         free = _free_position(builder, layer, loop, s)
         if free is not None:
             s = free
-            travel(builder, loop.at(s)[0], layer.z)
+            travel(builder, loop.at(s)[0], layer.z, layer.axis_region)
         elif ring.inner:
             s = _from_inner(builder, layer, ring, loop)
         else:
@@ -150,12 +150,19 @@ def _cut_closed(
 def _free_position(
     builder: PathBuilder, layer: ClearingLayer, loop: Curve, first: float
 ) -> float | None:
+    """Return where on a loop the cutter may come down in the free, on the shortest way that has to be fed, `first` if it is one."""
     count = 8
+    best: tuple[float, float] | None = None
     for k in range(count):
         s = (first + k * loop.length / count) % loop.length
-        if is_free(builder, loop.at(s)[0], layer.z):
-            return s
-    return None
+        position = loop.at(s)[0]
+        if is_free(builder, position, layer.z):
+            fed = descent(builder, position, layer.z)
+            if best is None or fed < best[0]:
+                best = fed, s
+            if fed <= builder.safety:
+                break
+    return None if best is None else best[1]
 
 
 def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: OffsetRing, loop: Curve) -> float:
@@ -177,7 +184,8 @@ def _open_up(
     parameters: ClearingParameters,
 ) -> float:
     centre, depth = deepest_position(AxisRegion(ring.region), layer.axis_region)
-    radius = helix_radius(builder, depth)
+    drop = _top(builder, layer, centre, builder.tool.radius) - layer.z
+    radius = helix_radius(builder, depth, drop, parameters.ramp)
     s = loop.nearest(centre)
     position, _ = loop.at(s)
     if radius > 0.0 and layer.axis_region.holds_line(centre, position):
@@ -230,18 +238,14 @@ def _come_to(
 ) -> None:
     """Bring the cutter to the start of an open pass: from outside where it is free, else by helix beside it, else by a ramp along it."""
     start, tangent = piece.start, piece.at(0.0)[1]
-    if is_free(builder, start, layer.z):
-        travel(builder, start, layer.z)
+    before = _beside(builder, layer, start, tangent)
+    if before is not None:
+        travel(builder, before, layer.z, layer.axis_region)
+        builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
         return
     left = np.array([-tangent[1], tangent[0]])
-    for share in RUN_OUTS:
-        for along, aside in RUN_OUT_DIRECTIONS:
-            before = start + share * builder.tool.radius * (along * tangent + aside * left)
-            if is_free(builder, before, layer.z) and layer.axis_region.holds_line(before, start):
-                travel(builder, before, layer.z)
-                builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
-                return
-    radius = helix_radius(builder, builder.tool.radius)
+    drop = _top(builder, layer, start, builder.tool.radius) - layer.z
+    radius = helix_radius(builder, builder.tool.radius, drop, parameters.ramp)
     centre = start + radius * left
     if radius > 0.0 and float(layer.axis_region.depth(centre)[0]) >= radius - tolerance.ON_REGION:
         helix(
@@ -256,6 +260,26 @@ def _come_to(
         return
     top = max(_top(builder, layer, p, 0.0) for p in piece.points)
     ramp_along(builder, piece, top, layer.z, parameters.ramp)
+
+
+def _beside(
+    builder: PathBuilder, layer: ClearingLayer, start: Floats, tangent: Floats
+) -> Floats | None:
+    """Return the free position at or near the start of an open pass from which the way that has to be fed, down and to the start, is
+    shortest; None where none is free."""
+    left = np.array([-tangent[1], tangent[0]])
+    best: tuple[float, Floats] | None = None
+    for share in (0.0, *RUN_OUTS):
+        run = share * builder.tool.radius
+        if best is not None and run >= best[0]:
+            break
+        for along, aside in RUN_OUT_DIRECTIONS if run > 0.0 else RUN_OUT_DIRECTIONS[:1]:
+            before = start + run * (along * tangent + aside * left)
+            if is_free(builder, before, layer.z) and layer.axis_region.holds_line(before, start):
+                fed = run + descent(builder, before, layer.z)
+                if best is None or fed < best[0]:
+                    best = fed, before
+    return None if best is None else best[1]
 
 
 def _stays_down(

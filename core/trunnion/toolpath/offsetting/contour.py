@@ -12,7 +12,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.toolpath.axis_region import AxisRegion, parts_where, points_along
 from trunnion.toolpath.motion.builder import PathBuilder
-from trunnion.toolpath.motion.link import may_plunge, step_aside, top_under
+from trunnion.toolpath.motion.link import is_off, may_plunge, step_aside, top_under, travel
 from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting.entry import ramp_along, ramp_round
 from trunnion.toolpath.offsetting.lead import cut_closed, enter, fitting_lead, from_free, leave
@@ -79,14 +79,16 @@ def cut_parts(
     z: float,
     axis_region: AxisRegion,
     approach: ContourApproach,
+    *,
+    past: bool = True,
 ) -> None:
-    """Cut contours at height `z`, the nearest next."""
-    for part in nearest_first(parts, lambda: builder.here, _away):
+    """Cut contours at height `z`, the nearest next, open ones as `cut_open` does."""
+    for part in nearest_first(parts, lambda: builder.here, curve_away):
         if part.closed:
             _cut_loop(builder, part, z, axis_region, approach)
         else:
             for _ in range(approach.rounds):
-                cut_open(builder, part, z, axis_region, approach)
+                cut_open(builder, part, z, axis_region, approach, past=past)
 
 
 def cut_open(
@@ -98,7 +100,10 @@ def cut_open(
     *,
     past: bool = True,
 ) -> None:
-    """Cut an open contour, followed straight on past both ends as far as there is space when `past`, with leads."""
+    """Cut an open contour, followed straight on past both ends as far as there is space when `past`, with leads.
+
+    An end that lies off the material and off every wall needs no lead: the cutter comes down on it, or is lifted there.
+    """
     feed = builder.data.feed
     (first, heading), (last, last_heading) = part.at(0.0), part.at(part.length)
     begin, end = (
@@ -109,20 +114,38 @@ def cut_open(
         if past
         else (first, last)
     )
-    lead, free = fitting_lead(begin, heading, approach.radius, axis_region, leaves=False), False
-    if lead is not None:
-        lead, free = from_free(builder, lead, heading, z, axis_region)
-    if lead is not None and (free or may_plunge(builder, lead.before, z)):
-        enter(builder, lead, begin, z, feed)
-    else:
+    if is_off(builder, begin, z):
+        travel(builder, begin, z, axis_region)
+    elif not _lead_in(builder, begin, heading, z, axis_region, approach.radius):
         ramp_along(builder, part, max(top_under(builder, p) for p in part.points), z, approach.ramp)
     builder.line((*first, z), feed)
     builder.curve(part, z, feed)
     builder.line((*end, z), feed)
+    if is_off(builder, end, z):
+        return
     off = fitting_lead(end, last_heading, approach.radius, axis_region, leaves=True)
     leave(builder, off, z, feed)
     if off is None:
         step_aside(builder, last_heading, axis_region)
+
+
+def _lead_in(
+    builder: PathBuilder,
+    begin: Floats,
+    heading: Floats,
+    z: float,
+    axis_region: AxisRegion,
+    radius: float,
+) -> bool:
+    """Enter a contour by a lead, where one fits that begins off the material; say whether."""
+    lead = fitting_lead(begin, heading, radius, axis_region, leaves=False)
+    if lead is None:
+        return False
+    lead, free = from_free(builder, lead, heading, z, axis_region)
+    if not free and not may_plunge(builder, lead.before, z):
+        return False
+    enter(builder, lead, begin, z, builder.data.feed, axis_region)
+    return True
 
 
 def _cut_loop(
@@ -157,5 +180,6 @@ def _past(builder: PathBuilder, end: Floats, direction: Floats, axis_region: Axi
     return end
 
 
-def _away(curve: Curve, position: Floats) -> float:
+def curve_away(curve: Curve, position: Floats) -> float:
+    """Return how far a pass begins from a position (2,): a closed one begins anywhere."""
     return float(curve.distance(position)[0]) if curve.closed else math.dist(curve.start, position)

@@ -45,12 +45,18 @@ def deepest_position(area: AxisRegion, axis_region: AxisRegion) -> tuple[Floats,
     return best, depth
 
 
-def helix_radius(builder: PathBuilder, depth: float) -> float:
-    """Return the radius of the helix that fits where the axis region is `depth` deep, or 0 when none does."""
+def helix_radius(builder: PathBuilder, depth: float, drop: float, angle: float) -> float:
+    """Return the radius of the helix that fits where the axis region is `depth` deep, or 0 when none does.
+
+    A helix that goes down by `drop` mm at a slope of `angle` is no wider than one turn needs.
+    """
     tool = builder.tool
     flat = tool.radius - tool.corner_radius
+    smallest = SMALLEST_HELIX * tool.diameter
     widest = min(2.0 * WIDEST_HELIX * max(flat, 0.5 * tool.radius), 0.98 * depth)
-    return widest if widest >= SMALLEST_HELIX * tool.diameter else 0.0
+    if widest < smallest:
+        return 0.0
+    return min(widest, max((drop + GAP) / (math.tau * math.tan(angle)), smallest))
 
 
 def helix(

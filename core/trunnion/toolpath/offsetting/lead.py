@@ -13,13 +13,13 @@ from trunnion.geometry.plane.curve import Curve
 from trunnion.model.motion.toolpath import Mark
 from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
-from trunnion.toolpath.motion.link import is_free, may_plunge, travel
+from trunnion.toolpath.motion.link import descent, is_free, may_plunge, travel
 
 SHARES = (1.0, 0.6, 0.35, 0.2)
 """Shares of the wanted radius that are tried one after the other where there is little space."""
 
-RUN_INS = (0.0, 0.5, 1.0, 2.0, 3.0, 4.0)
-"""Of the cutter's radius: straights before the arc that are tried until one begins off the material."""
+RUN_INS = (0.0, 0.1, 0.2, 0.35, 0.5, 1.0, 2.0, 3.0, 4.0)
+"""Of the cutter's radius: straights before the arc that are tried; one that begins off the material is taken."""
 
 QUARTER = 0.5 * math.pi
 STARTS = 12
@@ -83,7 +83,7 @@ def cut_closed(
         return False
     s, lead = start
     point, _ = loop.at(s)
-    enter(builder, lead, point, z, feed)
+    enter(builder, lead, point, z, feed, axis_region)
     opened = loop.split(s, s)
     for _ in range(rounds):
         builder.curve(opened, z, feed)
@@ -96,9 +96,16 @@ def cut_closed(
     return True
 
 
-def enter(builder: PathBuilder, lead: Lead, point: Floats, z: float, feed: float) -> None:
-    """Come down at a lead's outer end and follow it onto the contour."""
-    travel(builder, lead.before, z)
+def enter(
+    builder: PathBuilder,
+    lead: Lead,
+    point: Floats,
+    z: float,
+    feed: float,
+    axis_region: AxisRegion | None = None,
+) -> None:
+    """Come down at a lead's outer end, on a way that may stay down in an axis region, and follow it onto the contour."""
+    travel(builder, lead.before, z, axis_region)
     builder.line((*lead.outside, z), feed, Mark.LEAD)
     builder.arc((*point, z), lead.centre, QUARTER, feed, Mark.LEAD)
 
@@ -121,12 +128,22 @@ def start_positions(loop: Curve) -> list[float]:
 def from_free(
     builder: PathBuilder, lead: Lead, tangent: Floats, z: float, axis_region: AxisRegion
 ) -> tuple[Lead, bool]:
-    """Return a lead that begins where no material is, lengthened by a straight when that takes it there, and whether it does."""
+    """Return a lead that begins where no material is, and whether it does.
+
+    It is lengthened by the straight that takes it there, and farther off the wall where that is shorter than the way down beside it that
+    has to be fed.
+    """
+    best: tuple[float, Lead] | None = None
     for share in RUN_INS:
-        before = lead.outside + share * builder.tool.radius * _left_normal(tangent)
+        run = share * builder.tool.radius
+        if best is not None and run >= best[0]:
+            break
+        before = lead.outside + run * _left_normal(tangent)
         if is_free(builder, before, z) and axis_region.holds_line(before, lead.outside):
-            return replace(lead, before=before), True
-    return lead, False
+            cost = run + descent(builder, before, z)
+            if best is None or cost < best[0]:
+                best = cost, replace(lead, before=before)
+    return (lead, False) if best is None else (best[1], True)
 
 
 def _best_start(

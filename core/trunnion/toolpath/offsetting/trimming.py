@@ -18,7 +18,7 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import SECONDS_PER_MINUTE
 
-MARGIN = 1.0
+MARGIN = 0.5
 """mm that a pass begins before and ends after the positions where it engages."""
 
 LINK = 0.4
@@ -27,15 +27,19 @@ LINK = 0.4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PassTrimming:
-    """Trims the passes of one layer: the cells (nx, ny) of the stock that are to go, and the height over which what is counts."""
+    """Trims the passes of one layer: the cells (nx, ny) of the stock that are to go, the height over which what is counts, and how deep
+    in mm the cutter's side has to enter it to count."""
 
     wanted: Bools
     z: float
+    graze: float = 0.0
 
     @staticmethod
-    def of(builder: PathBuilder, area: Region, z: float) -> PassTrimming:
-        """Return the trimming of a layer for the stock in an area that is higher than `z` before its first pass."""
-        return PassTrimming(builder.stock().cells_above(z, area), z)
+    def of(builder: PathBuilder, area: Region, z: float, graze: float = 0.0) -> PassTrimming:
+        """Return the trimming of a layer for the stock in an area that is higher than `z` before its first pass; what a pass would enter
+        by less than `graze` cells is left to the next one."""
+        stock = builder.stock()
+        return PassTrimming(stock.cells_above(z, area), z, graze * stock.cell)
 
     def parts(self, builder: PathBuilder, curve: Curve) -> list[Curve]:
         """Return the parts of a pass on which the stock, as the path so far leaves it, is before the cutter; the curve itself when
@@ -46,13 +50,22 @@ class PassTrimming:
         ends = np.cumsum(seg.length)
         rows = np.minimum(np.searchsorted(ends, s, side="right"), len(seg) - 1)
         along = seg.directions(rows, s - (ends[rows] - seg.length[rows]))
-        engaged = self._meets(stock, points, along, tool.radius)
+        engaged = self._meets(stock, points, along, tool.radius - self.graze)
         if engaged.all():
             return [curve]
         if not engaged.any():
             return []
         gap = LINK * builder.data.feed / SECONDS_PER_MINUTE
         return _parts(curve, s, engaged, curve.length, MARGIN + stock.cell, gap)
+
+    def area(self, builder: PathBuilder, curve: Curve) -> float:
+        """Return the area in mm2 of the stock that a pass would meet."""
+        stock = builder.stock()
+        rows = np.argwhere(self.wanted & (stock.heights > self.z))
+        if not len(rows):
+            return 0.0
+        away = curve.distance(stock.corner + (rows + 0.5) * stock.cell)
+        return float((away < builder.tool.radius).sum()) * stock.cell**2
 
     def _meets(self, stock: PlanningStock, points: Floats, along: Floats, radius: float) -> Bools:
         """Return for positions (k, 2) of a cutter with directions (k, 2) whether stock lies under the front half of its rim."""

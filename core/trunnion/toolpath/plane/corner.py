@@ -22,6 +22,7 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased_finish
 from trunnion.toolpath.motion.engagement import eased_corner
+from trunnion.toolpath.motion.link import RIM
 from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.contour import ContourApproach, cut_open, cut_parts
@@ -37,10 +38,19 @@ SMALLEST_LEFTOVER = 0.05
 """mm2: less that is left needs no word."""
 
 OVERRUN = 1.0
-"""mm that the whole cutter runs past a rest along the wall."""
+"""mm that a pass overlaps what is cut at each end of a rest, along the wall."""
 
 WORTH = 0.1
 """mm: stock of a rest that stands no higher over a pass is not worth it."""
+
+TIP = 0.25
+"""mm: where a rest is narrower, as its ends along the walls are, roughing leaves it to finishing."""
+
+GRAZE = 0.5
+"""Cells of the stock that a roughing pass may leave, what is known of its edge being no better."""
+
+DEEPEST = 1.5
+"""Diameters: the deepest layer that a narrow rest is roughed in, as deep as a wall's finishing steps."""
 
 ENGAGED = 0.02
 """mm: a pass that would enter a rest by less is not made."""
@@ -87,16 +97,15 @@ def corner(
     above = drive.top
     for n, level in enumerate(drive.levels):
         progress.at(n / len(drive.levels), f"{drive.feature}: corners down to {level.bottom:.3f}")
-        heights = _heights(drive, n, above, tool, data, settings.scallop)
-        above = heights[-1].z if heights else above
-        rests = _rests(drive, level).split()
+        rests = _rests(drive, level, tool).split()
         near = _reaching(rests, tool)
         axis_regions: dict[float, tuple[AxisRegion, tuple[Curve, ...]]] = {}
         for rest in nearest_first(
             rests, lambda: builder.here, lambda r, p: abs(float(r.signed_distance(p)[0]))
         ):
             corner_passes: dict[float, list[Curve]] = {}
-            for height in heights:
+            layer, at_once = _layer(drive, rest, tool, data)
+            for height in _heights(drive, n, above, tool, layer, settings.scallop):
                 progress.check()
                 if height.distance not in axis_regions:
                     axis_regions[height.distance] = _passes(
@@ -104,35 +113,65 @@ def corner(
                     )
                 axis_region, rims = axis_regions[height.distance]
                 if height.distance not in corner_passes:
-                    corner_passes[height.distance] = list(_corner_passes(rims, rest, tool))
+                    over = axis_region.region.curves() if at_once else rims
+                    reach = height.distance - drive.wall_allowance
+                    corner_passes[height.distance] = list(_corner_passes(over, rest, tool, reach))
                 for part in _over_stock(
-                    builder, corner_passes[height.distance], rest, height.z, drive
+                    builder, corner_passes[height.distance], rest, height, drive, axis_region
                 ):
                     if part.closed:
                         cut_parts(builder, [part], height.z, axis_region, approach)
                     else:
                         cut_open(builder, part, height.z, axis_region, approach, past=False)
+        lowest = _heights(drive, n, above, tool, data.depth, settings.scallop)
+        above = lowest[-1].z if lowest else above
         findings += _remaining_findings(drive, level, tool, rests)
+    if not len(builder) and not findings:
+        findings.append(
+            info(
+                "corner.little",
+                f"what stands in the corners of {drive.feature} is no more than finishing takes with its allowance",
+                drive.feature,
+                remedy="suppress the operation",
+            )
+        )
     return Planned(
         path=eased_finish(builder.finished(), tool, data, stock, progress), findings=tuple(findings)
     )
 
 
 def _over_stock(
-    builder: PathBuilder, passes: list[Curve], rest: Region, z: float, drive: PlaneDrive
+    builder: PathBuilder,
+    passes: list[Curve],
+    rest: Region,
+    height: _Height,
+    drive: PlaneDrive,
+    axis_region: AxisRegion,
 ) -> Iterator[Curve]:
-    """Yield the parts of passes beside a rest at a height where its stock stands before the cutter; finishing passes whole, for what they
-    take off is finer than the planner's stock."""
-    if drive.wall_allowance <= 0.0 or not passes:
-        yield from passes
-        return
-    trimming = PassTrimming.of(builder, rest, z + WORTH)
+    """Yield the parts of passes beside a rest at a height where its stock stands before the cutter.
+
+    Of finishing the passes along the walls are whole, for what they take off is finer than the planner's stock; the others are there for
+    what roughing has left, and the stock at the rim, which a wall keeps high, does not count.
+    """
+    finishes = drive.wall_allowance <= 0.0
+    trimming = (
+        PassTrimming.of(builder, rest, height.z + WORTH, RIM if finishes else GRAZE)
+        if passes
+        else None
+    )
     for curve in passes:
-        yield from trimming.parts(builder, curve)
+        middle = curve.at(0.5 * curve.length)[0]
+        if trimming is None or (
+            finishes and float(axis_region.depth(middle)[0]) <= tolerance.ON_REGION
+        ):
+            yield curve
+        else:
+            yield from trimming.parts(builder, curve)
 
 
-def _rests(drive: PlaneDrive, level: DriveLevel) -> Region:
-    """Return what the earlier cutter left of a band's wanted area, the allowance on the walls taken off."""
+def _rests(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Region:
+    """Return what the earlier cutter left of a band's wanted area, the allowance on the walls taken off; of roughing without what is so
+    little that finishing takes it."""
     wanted = (
         level.wanted.offset(-drive.wall_allowance) if drive.wall_allowance > 0.0 else level.wanted
     )
@@ -141,11 +180,27 @@ def _rests(drive: PlaneDrive, level: DriveLevel) -> Region:
     cut = level.boundary.offset(-drive.earlier_radius - drive.earlier_allowance)
     slack = max(drive.earlier_allowance - drive.wall_allowance, 0.0) + tolerance.SEW
     rest = wanted.minus(cut.offset(drive.earlier_radius + slack)) if cut else wanted
-    return Region(tuple(p for p in rest.pieces if p.area > SMALLEST_REST))
+    if drive.wall_allowance > 0.0:
+        rest = rest.offset(-0.5 * TIP).offset(0.5 * TIP)
+    # No wider than the allowance on the mean of a diameter's way, as loads are measured: finishing takes that with the allowance.
+    least = max(SMALLEST_REST, drive.wall_allowance * tool.diameter)
+    return Region(tuple(p for p in rest.pieces if p.area > least))
+
+
+def _layer(drive: PlaneDrive, rest: Region, tool: Tool, data: CuttingData) -> tuple[float, bool]:
+    """Return how deep the layers of one rest are, and whether the passes along the walls take all of it.
+
+    Roughing takes the cross-section that the cutting data bear: where a rest is narrower than their width on the mean of a diameter's
+    way, as loads are measured, one pass takes it in layers that are deeper by as much.
+    """
+    bite = rest.area / tool.diameter
+    if drive.wall_allowance <= 0.0 or bite > data.width:
+        return data.depth, False
+    return max(min(data.depth * data.width / bite, DEEPEST * tool.diameter), data.depth), True
 
 
 def _heights(
-    drive: PlaneDrive, row: int, above: float, tool: Tool, data: CuttingData, scallop: float
+    drive: PlaneDrive, row: int, above: float, tool: Tool, depth: float, scallop: float
 ) -> list[_Height]:
     level = drive.levels[row]
     is_face = (
@@ -161,7 +216,7 @@ def _heights(
         fillet_steps(drive.fillet, tool.corner_radius, scallop) if on_floor and finishes else (0.0,)
     )
     straight = (
-        steps_down(above, bottom + foot[0], min(data.depth, tool.flute_length))
+        steps_down(above, bottom + foot[0], min(depth, tool.flute_length))
         if above - bottom > foot[0] + tolerance.SEW
         else ()
     )
@@ -191,9 +246,15 @@ def _passes(
     )
 
 
-def _corner_passes(rims: tuple[Curve, ...], rest: Region, tool: Tool) -> Iterator[Curve]:
-    """Yield the parts of the passes beside one rest that cut into it."""
-    around, inside = tool.radius + OVERRUN, tool.radius - ENGAGED
+def _corner_passes(
+    rims: tuple[Curve, ...], rest: Region, tool: Tool, reach: float
+) -> Iterator[Curve]:
+    """Yield the parts of the passes beside one rest that cut into it, the axis `reach` from its walls.
+
+    A smaller circle that touches the wall where a larger one did lies inside it: so beside the end of a rest the cutter touches nothing of
+    it yet, and runs in and out as far as it is to overlap what is cut.
+    """
+    around, inside = math.hypot(reach, OVERRUN), tool.radius - ENGAGED
     low, high = rest.box()
     for rim in rims:
         first, last = rim.box()

@@ -11,7 +11,6 @@ from trunnion.findings import error, info
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.model.motion.toolpath import Mark
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -195,20 +194,8 @@ def _cut_rows(
 
     # Climbing with the uncut material on the right: the first row goes towards -x (towards +y when turned, where right is +x).
     forward = turned
-    for n, v in enumerate(rows):
+    for v in rows:
         begin, end = along if forward else along[::-1]
-        if n == 0 or not zigzag:
-            travel(builder, position(begin, v)[:2], z)
+        travel(builder, position(begin, v)[:2], z)
         builder.line(position(end, v), builder.data.feed)
-        if zigzag and n + 1 < len(rows):
-            # Half a turn outside, anticlockwise where the next row lies on the left of the direction.
-            left = (rows[n + 1] > v) == (forward != turned)
-            middle = position(end, 0.5 * (v + rows[n + 1]))
-            builder.arc(
-                position(end, rows[n + 1]),
-                middle[:2],
-                math.pi if left else -math.pi,
-                builder.data.feed,
-                Mark.LINK,
-            )
-            forward = not forward
+        forward = forward != zigzag

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +12,7 @@ from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, info, warning
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -22,18 +24,31 @@ from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import contour_leftovers, inner_corner
+from trunnion.toolpath.motion.link import ASIDE
+from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.contour import (
     ContourApproach,
     contour_parts,
+    curve_away,
     cut_parts,
     length_out_of_reach,
 )
 from trunnion.toolpath.offsetting.levels import steps_down
+from trunnion.toolpath.offsetting.trimming import PassTrimming
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
+
+WORTH = 0.1
+"""mm: stock of the blank's margin that stands no higher over a layer is not worth a pass in it."""
+
+LITTLE = 0.25
+"""mm on the mean of a diameter's way: the next ring takes so much more, where that is all a ring would cut at a corner of the blank."""
+
+GRAZE = 0.5
+"""Cells of the stock that a pass may leave before the next one: the blank's edge goes through cells, a pass along it cuts nothing."""
 
 RIM_SPACING = 2.0
 """mm between the positions of the blank's rim whose distance from the profile is measured."""
@@ -86,9 +101,9 @@ def profile_rough(
         count = max(
             1, math.ceil((margin - drive.wall_allowance) / data.width - tolerance.COINCIDENT)
         )
+        # Whole widths from the part outwards: the outermost ring has the least to cut, along straight sides often nothing.
         distances = [
-            tool.radius + drive.wall_allowance + n * min(data.width, margin / count)
-            for n in reversed(range(count))
+            tool.radius + drive.wall_allowance + n * data.width for n in reversed(range(count))
         ]
         axis_regions: dict[tuple[int, float], tuple[AxisRegion, list[Curve]]] = {}
         for z in steps_down(max(guide.top, drive.stock_top), guide.bottom, data.depth):
@@ -107,7 +122,16 @@ def profile_rough(
                             contour_parts(axis_region, guide.curve, distance), stock, tool.radius
                         ),
                     )
-                cut_parts(builder, axis_regions[key][1], z, axis_regions[key][0], approach)
+                axis_region, passes = axis_regions[key]
+                _cut_over_stock(
+                    builder,
+                    passes,
+                    z,
+                    axis_region,
+                    approach,
+                    _outside(boundary, stock, drive.wall_allowance),
+                    0.0 if distance == distances[-1] else LITTLE * tool.diameter,
+                )
         findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
 
@@ -154,6 +178,34 @@ def profile_finish(
             )
         findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     return _planned(drive, builder, findings)
+
+
+def _outside(boundary: Region, stock: PlanningStock, allowance: float) -> Region:
+    """Return the blank's margin: what of its box is outside the part and the allowance on it."""
+    low, high = stock.box()
+    return boundary.offset(-allowance).intersect(Region.rectangle(*low, *high))
+
+
+def _cut_over_stock(
+    builder: PathBuilder,
+    passes: list[Curve],
+    z: float,
+    axis_region: AxisRegion,
+    approach: ContourApproach,
+    margin: Region,
+    least: float,
+) -> None:
+    """Cut passes at height `z`, the nearest next, where more than `least` mm2 of the blank's margin stands before the cutter."""
+    trimming = PassTrimming.of(builder, margin, z + WORTH, GRAZE)
+    shorter = replace(approach, radius=min(approach.radius, ASIDE))
+    for whole in nearest_first(passes, lambda: builder.here, curve_away):
+        parts = trimming.parts(builder, whole)
+        if least > 0.0:
+            parts = [part for part in parts if trimming.area(builder, part) > least]
+        if parts == [whole]:
+            cut_parts(builder, parts, z, axis_region, approach)
+        else:
+            cut_parts(builder, parts, z, axis_region, shorter, past=False)
 
 
 def _steps(
