@@ -21,6 +21,7 @@ from trunnion.pipeline.planning.clearance import PartClearance
 from trunnion.plan.contract import PartContext
 from trunnion.progress import Progress
 from trunnion.settings import digest
+from trunnion.toolpath.motion.load import LoadStock
 from trunnion.toolpath.motion.reorient import Pose
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.views import StockViews
@@ -73,12 +74,14 @@ class SetupScene:
     process: ProcessTree
     fixtures: tuple[Fixture, ...]
     sides: StockViews = field(init=False)
+    loads: LoadStock = field(init=False)
     last: OperationPath | None = None
     tool: Tool | None = None
     _made: dict[Hashable, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.sides = StockViews(self.blank)
+        self.loads = LoadStock(self.blank, self.setup.frame)
 
     def stock(self, setup: Setup) -> PlanningStock:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
