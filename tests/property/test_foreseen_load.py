@@ -73,8 +73,8 @@ ENTERED = {"plane.floor"}
 FEW = 6
 """Operations of a strategy below which a median says little."""
 IN_CORNERS = {"plane.corner", "plane.wall"}
-"""Their thickest chip is that of a moment in a corner, which the proof takes from its widest probe and the plan from half a radius' way; and
-a long block's rate is to the proof that of its widest end."""
+"""Their thickest chip is that of a moment in a corner, which the proof takes from its widest probe and the plan from half a radius' way;
+and a long block's rate is to the proof that of its widest end."""
 
 
 @cache

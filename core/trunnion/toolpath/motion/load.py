@@ -75,7 +75,7 @@ def load_of(
     cuts = (volume > 0.0) & (pieces.motion != Motion.RAPID)
     # Each piece's volume goes at its own feed: a neighbour that is eased doesn't count at the feed of this one.
     section, square, flow = (
-        np.where(cuts, _per_way(pieces, taken, tool.diameter), 0.0)
+        np.where(cuts, _by_length(pieces, taken, tool.diameter), 0.0)
         for taken in (volume, squares, volume * np.where(cuts, pieces.feed, 0.0))
     )
     width = _width(section, square, tool)
@@ -111,7 +111,7 @@ def _width(section: Floats, square: Floats, tool: Tool) -> Floats:
     return np.clip(width, section / tool.flute_length, tool.diameter)
 
 
-def _per_way(pieces: Toolpath, taken: Floats, window: float) -> Floats:
+def _by_length(pieces: Toolpath, taken: Floats, window: float) -> Floats:
     """Return what pieces take (n,) over their way (n,), on a stretch of at least a window (mm) about each; a rapid ends a stretch."""
     length, rapid = pieces.lengths(), pieces.motion == Motion.RAPID
     # Rapids are as long as no window is, and along them neither way nor what is taken grows.
