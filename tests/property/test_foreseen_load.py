@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -61,6 +62,51 @@ def test_what_is_foreseen_at_full_width_is_near_what_is_measured():
     ]
     assert len(found) >= len(SEEDS)
     assert float(np.mean(found)) <= NOT_MUCH_MORE
+
+
+CLOSE = (0.87, 1.15)
+"""What a strategy's laid paths come to, over what is measured of them, on the median."""
+AT_AN_ENTRY = 1.25
+"""The same at most for power of strategies in `ENTERED`: they meet their peak where a helix runs out into a flat turn, and the proof takes
+the mean depth of the whole turn, the plan that of a diameter's way."""
+ENTERED = {"plane.floor"}
+FEW = 6
+"""Operations of a strategy below which a median says little."""
+IN_CORNERS = {"plane.corner", "plane.wall"}
+"""Their thickest chip is that of a moment in a corner, which the proof takes from its widest probe and the plan from half a radius' way;
+and a long block's rate is to the proof that of its widest end."""
+
+
+@cache
+def laid() -> dict[str, np.ndarray]:
+    """Return by strategy of each operation (n, 3) power, chip and removal rate that its path comes to, over the measured."""
+    found = defaultdict(list)
+    for session in map(programmed, SEEDS):
+        proofs = {p.operation: p for p in session.verdict.operations}
+        for o in session.process.operations:
+            path, proof = session.path_of(o.id), proofs.get(o.id)
+            if path is not None and proof is not None and proof.power:
+                found[o.strategy].append(
+                    (path.power / proof.power, path.chip / proof.chip, path.rate / proof.rate)
+                )
+    return {name: np.array(rows) for name, rows in found.items() if len(rows) >= FEW}
+
+
+def medians(column: int) -> dict[str, float]:
+    return {name: float(np.median(rows[:, column])) for name, rows in laid().items()}
+
+
+def test_the_power_that_laid_paths_come_to_is_what_is_measured_of_them():
+    power = medians(0)
+    assert len(power) >= 6
+    assert {n: r for n, r in power.items() if r < CLOSE[0]} == {}
+    assert {n: r for n, r in power.items() if r > (AT_AN_ENTRY if n in ENTERED else CLOSE[1])} == {}
+
+
+@pytest.mark.parametrize("column", [1, 2], ids=["chip", "removal"])
+def test_chips_and_removal_of_laid_paths_are_what_is_measured_of_them(column):
+    found = {name: r for name, r in medians(column).items() if name not in IN_CORNERS}
+    assert {n: r for n, r in found.items() if not CLOSE[0] <= r <= CLOSE[1]} == {}
 
 
 @cache

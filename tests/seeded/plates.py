@@ -35,6 +35,13 @@ def plate(seed: int) -> Seeded:
     raise ValueError(f"plate {seed}: {MOST_DRAWS} draws gave no valid solid")
 
 
+def small_plate(seed: int) -> Any:
+    """Return a wavy plate without local features, as small as one that takes seconds."""
+    draw = Random(f"small plate {seed}")
+    size = draw.uniform(24.0, 30.0), draw.uniform(18.0, 22.0)
+    return _wavy(draw, *size, draw.uniform(8.0, 10.0)).val().wrapped
+
+
 def _is_sound(made: Seeded) -> bool:
     """Return whether a part's file holds a solid without faults: some are valid only until they are written in inches."""
     with tempfile.TemporaryDirectory() as folder:

@@ -137,9 +137,16 @@ class Operation:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OperationPath:
-    """The toolpath of one operation, the areas it leaves (in words) and the digest of what it was made from."""
+    """The toolpath of one operation, the areas it leaves (in words) and the digest of what it was made from.
+
+    `power` kW, `rate` cm3/min and `chip` mm are the highest that its own motions come to, by what they take off the stock as it is planned:
+    0 where that isn't known, of a tool that leans.
+    """
 
     operation: str
     path: Toolpath = EMPTY
     findings: tuple[Finding, ...] = ()
     key: str = ""
+    power: float = added(0.0)
+    rate: float = added(0.0)
+    chip: float = added(0.0)

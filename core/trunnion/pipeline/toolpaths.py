@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from trunnion import registry
+from trunnion import registry, tolerance
 from trunnion.findings import BadCall, Finding, Fix, Refused, error, info
 from trunnion.geometry.frame import Frame
-from trunnion.model.motion.toolpath import Toolpath
+from trunnion.model.material import Material
+from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
@@ -43,6 +44,7 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
         raise BadCall("no operations yet: generate the route first")
     made: list[OperationPath] = []
     planner, parts = planner_for(session.recognition.family), SessionContext(context, session)
+    material = context.shop.material(session.process.material)
     total = sum(len(session.process.of_setup(setup.name)) for setup in session.setups)
     # What one setup leaves is the next one's stock, whatever side it looks from.
     stock = StockViews(session.blank)
@@ -63,7 +65,8 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
                 (len(made) + 1) / max(total, 1),
                 f"toolpath of {operation.id}",
             )
-            made.append(_make_one(session, planner, scene, operation, here))
+            laid = _make_one(session, planner, scene, operation, here)
+            made.append(_loaded(laid, operation, scene, material, here.part(1.0, 1.0)))
     return tuple(made)
 
 
@@ -166,6 +169,23 @@ def _with(first: Sequence[Finding], others: Sequence[Finding]) -> tuple[Finding,
     """Return findings once each: those of a path that was kept hold those of its drive already."""
     codes = {f.code for f in first}
     return (*first, *(f for f in others if f.code not in codes))
+
+
+def _loaded(
+    laid: OperationPath,
+    operation: Operation,
+    scene: SetupScene,
+    material: Material,
+    progress: Progress,
+) -> OperationPath:
+    """Return a toolpath with the highest load that its motions come to, where its tool stands upright in the setup."""
+    cuts = laid.path.motion != Motion.RAPID
+    if not cuts.any() or (laid.path.axis[cuts, 2] < 1.0 - tolerance.PARAMETRIC).any():
+        return laid
+    path = turned(laid.path, scene.setup.frame, scene.loads.frame)
+    load = scene.loads.cut(path, operation.cutter, operation.data, material, progress)
+    power, rate, chip = (float(v.max(initial=0.0)) for v in (load.power, load.rate, load.chip))
+    return replace(laid, power=power, rate=rate, chip=chip)
 
 
 def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:

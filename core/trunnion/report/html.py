@@ -40,6 +40,7 @@ def report_html(
         session=session,
         pictures=shown,
         proofs=proofs,
+        laid={p.operation: p.power for p in session.paths},
         duration=duration,
         share=share,
         degrees=degrees,

@@ -77,7 +77,7 @@ def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
         random.random((20, 1)) < 0.3, starts, random.uniform((-5, -5, -9), (45, 35, 0), (20, 3))
     )
     fast, plain = np.zeros((80, 60)), np.zeros((80, 60))
-    gone, plainly_gone = np.zeros(20), np.zeros(20)
+    gone, plainly_gone = np.zeros((20, 2)), np.zeros((20, 2))
     heightfield.zmap_cut(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, gone)
     heightfield.zmap_cut_reference(plain, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, plainly_gone)
     assert max(np.abs(fast - plain).max(), np.abs(gone - plainly_gone).max()) < 1e-9
@@ -107,6 +107,6 @@ def test_a_cutter_smaller_than_a_cell_removes_nothing_for_certain() -> None:
         np.array([[6.0, 5.0, -1.0]]),
         0.4,
         0.0,
-        np.zeros(1),
+        np.zeros((1, 2)),
     )
     assert not heights.any()

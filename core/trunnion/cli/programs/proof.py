@@ -10,6 +10,7 @@ from trunnion.findings import has_errors
 from trunnion.model.verdict import Offer, OperationProof
 
 if TYPE_CHECKING:
+    from trunnion.model.operation import Operation
     from trunnion.model.session import Session
 
 
@@ -46,6 +47,7 @@ def proof_dict(
                 "feature": o.feature,
                 "tool": o.tool.number,
                 "setup": o.setup,
+                **_foreseen(session, o),
                 **measured,
             }
         )
@@ -73,6 +75,15 @@ def proof_dict(
         "repairs": [entry for r in session.repairs for entry in r.as_dicts()],
         "files": list(files),
         "findings": [f.as_dict() for f in session.findings()],
+    }
+
+
+def _foreseen(session: Session, operation: Operation) -> dict[str, Any]:
+    """Return what was foreseen of an operation's load: at the largest engagement of its strategy, and of its path as it was laid."""
+    made = session.path_of(operation.id)
+    return {
+        "foreseen_kw": operation.data.highest_power,
+        **({"laid_kw": made.power, "laid_chip_mm": made.chip} if made and made.power else {}),
     }
 
 

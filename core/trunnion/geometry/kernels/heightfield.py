@@ -36,7 +36,8 @@ def zmap_cut(
 
     A cell gets the height of the cutter's lower side at its furthest corner from the path, at most
     half a diagonal beyond its centre, for the move's higher end: never lower than the true cut
-    anywhere in the cell. gone (n,) gets the heights that each move takes off, summed over cells.
+    anywhere in the cell. gone (n, 2) gets the heights that each move takes off, summed over cells, and the sum of their
+    squares.
     """
     nx, ny = heights.shape
     slack = cell * HALF_DIAGONAL
@@ -74,7 +75,8 @@ def zmap_cut(
                 if inner > 0.0:
                     lift = z + corner - math.sqrt(max(corner * corner - inner * inner, 0.0))
                 if lift < heights[i, j]:
-                    gone[n] += heights[i, j] - lift
+                    gone[n, 0] += heights[i, j] - lift
+                    gone[n, 1] += (heights[i, j] - lift) ** 2
                     heights[i, j] = lift
 
 
@@ -126,12 +128,12 @@ def zmap_cut_reference(
     """Plain numpy form of `zmap_cut`: every cell for every move."""
     centres = _centres(heights, x0, y0, cell)
     for n, (a, b) in enumerate(zip(starts, ends, strict=True)):
-        before = heights.sum()
+        before = heights.copy()
         far = _distance(centres, a[:2], b[:2]) + cell * HALF_DIAGONAL
         inner = np.maximum(far - (radius - corner), 0.0)
         lift = max(a[2], b[2]) + corner - np.sqrt(np.maximum(corner**2 - inner**2, 0.0))
         heights[...] = np.where(far <= radius, np.minimum(heights, lift), heights)
-        gone[n] = before - heights.sum()
+        gone[n] = (before - heights).sum(), ((before - heights) ** 2).sum()
 
 
 def zmap_highest_reference(

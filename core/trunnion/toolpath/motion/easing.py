@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
@@ -71,10 +71,11 @@ def _eased(
 ) -> Toolpath:
     if not len(path):
         return path
-    pieces, block = _in_pieces(path, PIECE * tool.radius)
+    cuts = (path.motion != Motion.RAPID) & (path.mark != Mark.ENTRY)
+    pieces, block = in_pieces(path, PIECE * tool.radius, cuts)
     length = pieces.lengths()
     # A piece's own front is partly opened by the one before: over a diameter's length that evens out.
-    section = _over(pieces, length, stock.working().lower(pieces, tool, progress), tool.diameter)
+    section = evened(pieces, length, stock.working().lower(pieces, tool, progress), tool.diameter)
     share = np.clip(
         np.divide(most, section, out=np.ones(len(pieces)), where=section > most), LEAST, 1.0
     )
@@ -93,9 +94,8 @@ def _eased(
     )
 
 
-def _in_pieces(path: Toolpath, piece: float) -> tuple[Toolpath, Ints]:
-    """Return a path with its cutting blocks in pieces no longer than `piece` mm, and the block (n,) that each is of."""
-    cuts = (path.motion != Motion.RAPID) & (path.mark != Mark.ENTRY)
+def in_pieces(path: Toolpath, piece: float, cuts: Bools) -> tuple[Toolpath, Ints]:
+    """Return a path with some blocks, `cuts` (n,), in pieces no longer than `piece` mm, and the block (m,) that each is of."""
     count = np.where(cuts, np.maximum(np.ceil(path.lengths() / piece), 1.0), 1.0).astype(np.int64)
     rows = np.repeat(np.arange(len(path)), count)
     step_index = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
@@ -115,7 +115,7 @@ def _in_pieces(path: Toolpath, piece: float) -> tuple[Toolpath, Ints]:
     ), rows
 
 
-def _over(pieces: Toolpath, length: Floats, gone: Floats, window: float) -> Floats:
+def evened(pieces: Toolpath, length: Floats, gone: Floats, window: float) -> Floats:
     """Return the volume per way (n,) in mm2 that pieces take off, evened out over a window about each; rapids end a window."""
     run = np.concatenate(
         [[0.0], np.cumsum(np.where(pieces.motion == Motion.RAPID, window, length))]

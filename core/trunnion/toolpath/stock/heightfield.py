@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
 from trunnion.geometry.kernels import heightfield
 from trunnion.geometry.plane.curve import turn
 from trunnion.geometry.plane.region import Region
@@ -40,13 +41,15 @@ LARGEST_CELL = 10.0
 class PlanningStock:
     """Heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,).
 
-    `digest` is a short stable digest of the uncut field and everything that was cut from it.
+    `digest` is a short stable digest of the uncut field and everything that was cut from it. A `centred` field errs to neither side:
+    a cell is lowered where the cutter covers its middle. It is what loads are taken from, never clearances.
     """
 
     heights: Floats
     corner: Floats
     cell: float
     digest: str
+    centred: bool = False
 
     @staticmethod
     def of(blank: Blank, setup: Setup, cell: float = CELL) -> PlanningStock:
@@ -68,6 +71,26 @@ class PlanningStock:
             key = digest(key, heights)
         return PlanningStock(heights=_fixed(heights), corner=corner, cell=cell, digest=key)
 
+    @staticmethod
+    def centred_in(blank: Blank, frame: Frame, cell: float = CELL) -> PlanningStock:
+        """Return a centred stock of an uncut blank in a frame, itself a working copy: as the lines through its cells' middles meet the
+        blank."""
+        low, high = blank.box_in(frame)
+        cell = max(cell, float(np.sqrt(np.prod(high[:2] - low[:2]) / MOST_CELLS)))
+        shape = tuple(np.ceil((high[:2] - low[:2]) / cell).astype(int))
+        middles = low[:2] + (np.argwhere(np.ones(shape, dtype=bool)) + 0.5) * cell
+        met = blank.intervals(
+            blank.own(np.column_stack([middles, np.full(len(middles), low[2])]), frame),
+            blank.frame.local_direction(frame.z),
+        )
+        return PlanningStock(
+            heights=(low[2] + met.tops(0.0)).reshape(shape),
+            corner=_fixed(low[:2]),
+            cell=cell,
+            digest="",
+            centred=True,
+        )
+
     def after(self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS) -> PlanningStock:
         """Return the stock after the feed moves of a path."""
         if (path.motion == Motion.RAPID).all():
@@ -86,8 +109,16 @@ class PlanningStock:
     def lower(self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS) -> Floats:
         """Take the feed moves of a path off this very field, which must be a `working` copy; return the volume (n,) in mm3 that each
         block takes off."""
+        return self.taken(path, tool, progress)[0]
+
+    def taken(
+        self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS
+    ) -> tuple[Floats, Floats]:
+        """Do as `lower`, and return also the height that each block takes off, squared and summed over the area in plan: (n,) mm4."""
         starts, ends, rows, error = chords(path)
-        radius, gone = tool.radius - error, np.empty(len(starts))
+        radius, gone = tool.radius - error, np.empty((len(starts), 2))
+        # A cell's furthest corner counts: with a cutter as much wider its middle does.
+        wider = heightfield.HALF_DIAGONAL * self.cell if self.centred else 0.0
         for first in progress.each(range(0, len(starts), MOVES)):
             some = slice(first, first + MOVES)
             heightfield.zmap_cut(
@@ -97,12 +128,15 @@ class PlanningStock:
                 self.cell,
                 starts[some],
                 ends[some],
-                radius,
+                radius + wider,
                 min(tool.corner_radius, radius),
                 gone[some],
             )
-        volume: Floats = np.bincount(rows, gone, len(path)).astype(np.float64) * self.cell**2
-        return volume
+        volume, squares = (
+            np.bincount(rows, gone[:, k], len(path)).astype(np.float64) * self.cell**2
+            for k in (0, 1)
+        )
+        return volume, squares
 
     def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
         """Return the greatest height that a disc may touch on its path from `start` to `end` (2,), or -inf over nothing."""

@@ -1,0 +1,126 @@
+"""The load that a path as it was laid puts on cutter and spindle, piece by piece, from what it takes off the stock.
+
+Sections and widths of cut are means over a diameter's way: a corner that loads a cutter for less is not a peak. Power is Kienzle's, as in
+the cutting data. Feeds are those that are programmed: a machine that doesn't come up to them on a short block bears less.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.frame import Frame
+from trunnion.model.blank import Blank
+from trunnion.model.material import Material
+from trunnion.model.motion.toolpath import Motion, Toolpath
+from trunnion.model.operation import CuttingData
+from trunnion.model.tool import Tool
+from trunnion.plan.cutting.power import specific_force
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.toolpath.motion.easing import PIECE, in_pieces
+from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
+
+CELL = 0.25
+"""mm: side of the cells that loads are taken from. Layers along a wall are a few tenths thick."""
+TURN = math.atan((math.sqrt(5.0) - 1.0) / 2.0)
+"""rad: turn of the cells against the setup. The golden ratio is worst told by fractions: along any wall the cells come evenly, and a layer
+thinner than a cell is seen as thick as it is on the mean."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class PathLoad:
+    """The load of pieces n of a path: rate (n,) cm3/min, chip (n,) mm the thickest, power (n,) kW."""
+
+    rate: Floats
+    chip: Floats
+    power: Floats
+
+
+class LoadStock:
+    """The stock of one setup that loads are taken from, as operation after operation cuts it; only upright tools do."""
+
+    def __init__(self, blank: Blank, frame: Frame) -> None:
+        c, s = math.cos(TURN), math.sin(TURN)
+        self.frame = Frame(origin=frame.origin, x=c * frame.x + s * frame.y, z=frame.z)
+        self._stock = PlanningStock.centred_in(blank, self.frame, CELL)
+
+    def cut(
+        self,
+        path: Toolpath,
+        tool: Tool,
+        data: CuttingData,
+        material: Material,
+        progress: Progress = NO_PROGRESS,
+    ) -> PathLoad:
+        """Take a path of an upright tool, in this stock's own frame, off it and return its load."""
+        cuts = path.motion != Motion.RAPID
+        pieces, _ = in_pieces(path, PIECE * tool.radius, cuts)
+        return load_of(pieces, tool, data, material, *self._stock.taken(pieces, tool, progress))
+
+
+def load_of(
+    pieces: Toolpath,
+    tool: Tool,
+    data: CuttingData,
+    material: Material,
+    volume: Floats,
+    squares: Floats,
+) -> PathLoad:
+    """Return the load of pieces that take off volumes (n,) mm3, the squares of their heights summed up to `squares` (n,) mm4."""
+    cuts = (volume > 0.0) & (pieces.motion != Motion.RAPID)
+    # Each piece's volume goes at its own feed: a neighbour that is eased doesn't count at the feed of this one.
+    section, square, flow = (
+        np.where(cuts, _by_length(pieces, taken, tool.diameter), 0.0)
+        for taken in (volume, squares, volume * np.where(cuts, pieces.feed, 0.0))
+    )
+    width = _width(section, square, tool)
+    feed = np.divide(flow, section, out=np.zeros(len(pieces)), where=section > 0.0)
+    mean = feed / (tool.teeth * data.spindle) * mean_share(width, tool.diameter)
+    rate = flow / MM_PER_METRE
+    power = rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT)
+    # A chip is thick where a cutter is engaged far round, for however short a way.
+    length = np.maximum(pieces.lengths(), tolerance.COINCIDENT)
+    here = _width(np.where(cuts, volume / length, 0.0), np.where(cuts, squares / length, 0.0), tool)
+    thickest = np.sin(np.minimum(contact_arc(here, tool.diameter), 0.5 * math.pi))
+    tooth = np.where(cuts, pieces.feed, 0.0) / (tool.teeth * data.spindle)
+    return PathLoad(rate=rate, chip=tooth * thickest, power=np.where(cuts, power, 0.0))
+
+
+def contact_arc(width: Floats, diameter: float) -> Floats:
+    """Return the angle (n,) rad over which a cutter is engaged from its side in widths (n,) mm."""
+    return np.arccos(np.clip(1.0 - 2.0 * width / diameter, -1.0, 1.0))
+
+
+def mean_share(width: Floats, diameter: float) -> Floats:
+    """Return the mean chip thickness over the arc of contact, over the feed per tooth, in widths (n,) mm."""
+    arc = contact_arc(width, diameter)
+    return np.divide(2.0 * width / diameter, arc, out=np.zeros(len(arc)), where=arc > 0.0)
+
+
+def _width(section: Floats, square: Floats, tool: Tool) -> Floats:
+    """Return the width (n,) mm of cuts of a section (n,) mm2 whose heights' squares sum up to `square` (n,) mm3 across.
+
+    Of heights h it is (sum of h)^2 / (sum of h^2), that of one even layer: thin films beside a cut don't widen it.
+    """
+    width = np.divide(section**2, square, out=np.zeros(len(section)), where=square > 0.0)
+    return np.clip(width, section / tool.flute_length, tool.diameter)
+
+
+def _by_length(pieces: Toolpath, taken: Floats, window: float) -> Floats:
+    """Return what pieces take (n,) over their way (n,), on a stretch of at least a window (mm) about each; a rapid ends a stretch."""
+    length, rapid = pieces.lengths(), pieces.motion == Motion.RAPID
+    # Rapids are as long as no window is, and along them neither way nor what is taken grows.
+    at, way, total = (
+        np.concatenate([[0.0], np.cumsum(steps)])
+        for steps in (np.where(rapid, window, length), np.where(rapid, 0.0, length), taken)
+    )
+    spare = 0.5 * np.maximum(window - length, 0.0)
+    low, high = at[:-1] - spare, at[1:] + spare
+    between = np.interp(high, at, way) - np.interp(low, at, way)
+    cut = np.interp(high, at, total) - np.interp(low, at, total)
+    return np.divide(cut, between, out=np.zeros(len(pieces)), where=~rapid & (between > 0.0))
