@@ -235,11 +235,11 @@ def test_a_clamp_in_the_way_makes_the_toolpaths_stale_and_is_avoided(line, tmp_p
     clamped = engine.with_fixtures(session, [str(tmp_path / "clamp.stl")])
     stale = [name for name, state in engine.states(clamped).items() if state != "done"]
     assert stale == ["toolpath", "verify", "repair"]
-    failed = engine.run(clamped, until="verify")
-    # What it covers is named and missing, nothing touches it.
-    assert failed.verdict.outcome is Outcome.FAILED and failed.verdict.collisions == 0
-    assert {"verify.coverage"} == {f.code for f in failed.verdict.findings if f.severity == "error"}
-    assert "fixture.kept-off" in {f.code for f in failed.findings()}
+    held = engine.run(clamped, until="verify")
+    # What it covers is named, nothing touches it, and enough is reached beside it.
+    assert held.verdict.outcome is Outcome.REMARKS and held.verdict.collisions == 0
+    assert 0.99 <= held.verdict.coverage < session.verdict.coverage
+    assert "fixture.kept-off" in {f.code for f in held.findings()}
     with pytest.raises(BadInput, match="clamp is for setup S7; the part has S1"):
         engine.run(engine.with_fixtures(session, [f"S7={tmp_path / 'clamp.stl'}"]))
 
