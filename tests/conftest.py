@@ -23,6 +23,7 @@ LONGEST_FIRST = (
     "test_surface_ridges",
     "test_own_family",
     "test_foreseen_load",
+    "test_simulation",
     "test_window",
     "test_viewport",
     "test_unsaved",
