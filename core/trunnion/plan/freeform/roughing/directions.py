@@ -17,12 +17,15 @@ from trunnion.plan.freeform.reach import AreaSamples, reached
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import Progress
 
-TILTS = (math.radians(90.0), math.radians(60.0))
-"""How far from upright directions are tried, all round."""
+TILTS = (math.radians(90.0), math.radians(60.0), math.radians(30.0))
+"""How far from upright directions are tried, all round: from slightly tilted ones a tool comes to what leans over its own foot."""
 ROUND = 8
 """Directions all round: the setup's axes first."""
 WORTH = 0.1
 """Share of what is hidden that another direction must see to be worth its turn."""
+EVEN = 0.05
+"""Share of what is hidden by which a tilted direction must see more than a level one to be taken before it: level ones leave most space
+for the spindle, and what they see lies in even layers."""
 FACING = math.sin(math.radians(10.0))
 """Cosine of the angle from a direction from which on a position looks along it rather than at it: such a one says not how deep to go."""
 OFF = 0.3
@@ -74,26 +77,23 @@ def sides_for(
         heights.append(local.point[:, 2])
         facing.append(local.normal[:, 2] > FACING)
     found, remaining = [], np.ones(len(hidden), dtype=bool)
-    for tilt in range(len(TILTS)):
-        # Level directions first: they leave most space for the spindle, and what they see lies in even layers.
-        rows = [
-            k
-            for k, d in enumerate(directions)
-            if abs(d[2] - math.cos(TILTS[tilt])) < tolerance.ANGLE
-        ]
-        while rows and remaining.any():
-            best = max(rows, key=lambda k: (int((seen[k] & remaining).sum()), -k))
-            gained = seen[best] & remaining
-            if gained.sum() <= WORTH * len(hidden):
-                break
-            faces = gained & facing[best]
-            found.append(
-                RoughingDirection(
-                    space=spaces[best],
-                    bottom=float(heights[best][faces if faces.any() else gained].min()),
-                )
+    tilted = np.array(
+        [directions[k][2] > math.sin(tolerance.ANGLE) for k in range(len(directions))]
+    )
+    while remaining.any():
+        gained = np.array([int((one & remaining).sum()) for one in seen])
+        best = int(np.argmax(gained - EVEN * len(hidden) * tilted))
+        if gained[best] <= WORTH * len(hidden):
+            break
+        own = seen[best] & remaining
+        faces = own & facing[best]
+        found.append(
+            RoughingDirection(
+                space=spaces[best],
+                bottom=float(heights[best][faces if faces.any() else own].min()),
             )
-            remaining &= ~gained
+        )
+        remaining &= ~own
     return found
 
 
