@@ -163,8 +163,6 @@ def _footed(
         e
         for e in part.edges().vals()
         if e.geomType() == "BSPLINE"
-        and all(
-            off(p) < ON and hypot(p.x, p.y) < within for p in e.positions((0.0, 0.3, 0.6, 1.0))
-        )
+        and all(off(p) < ON and hypot(p.x, p.y) < within for p in e.positions((0.0, 0.3, 0.6, 1.0)))
     ]
     return cq.Workplane(part.val().fillet(foot, roots))

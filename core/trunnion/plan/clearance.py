@@ -40,6 +40,10 @@ class ClearanceScene(Protocol):
 class Standing(Protocol):
     """Material that stands, as positions (`toolpath.stock.standing.StandingStock`)."""
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing stands."""
+
     def beyond(self, thickness: float, points: Floats, normals: Floats) -> Standing:
         """Return what of it is farther than a thickness (mm) outside of a part with positions (s, 3) and normals (s, 3) all over."""
 

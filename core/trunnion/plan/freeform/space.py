@@ -100,7 +100,8 @@ class SurfaceSpace:
         progress: Progress = NO_PROGRESS,
     ) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for`
-        returns the clearance query of a tool, `standing` is the material that stands, `upright` the cutter that finished what an upright one comes to.
+        returns the clearance query of a tool, `standing` is the material that stands, `upright` the cutter that finished what an upright
+        one comes to.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
         """

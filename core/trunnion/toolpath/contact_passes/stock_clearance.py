@@ -1,7 +1,7 @@
-"""Clearance of a leaning tool from the stock that stands: which poses keep neck, shank and holder out of it, and from where on rapids may go.
+"""Clearance of a leaning tool from stock: which poses keep neck, shank and holder out of it, and from where on rapids may go.
 
-Near the part, within a thickness, earlier operations have left more or less everywhere: tools keep that far from the part itself. What stands
-beyond is known by positions (`plan.clearance.Standing`).
+Near the part earlier operations have left more or less everywhere: tools keep a thickness from the part itself. What stands beyond is
+known by positions (`plan.clearance.Standing`).
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ LIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StockClearance:
-    """Queries of one tool among stock: up to a `thickness` (mm) it may stand anywhere on the part; `beyond` is what is known to stand farther
-    from it than anything is certain."""
+    """Queries of one tool among stock: up to a `thickness` (mm) it may stand anywhere on the part, `beyond` is what is known to stand
+    farther off."""
 
     drive: SurfaceDrive
     tool: Tool
@@ -47,6 +47,11 @@ class StockClearance:
             samples = _samples(drive.skin)
             beyond = drive.standing.beyond(LEAST_STOCK, samples.point, samples.normal)
         return StockClearance(drive, tool, thickness, beyond)
+
+    @property
+    def has_stock(self) -> bool:
+        """Whether anything is known to stand."""
+        return self.beyond is not None and not self.beyond.is_empty
 
     def clear_of_stock(self, query: ClearanceQuery) -> ClearanceQuery:
         """Return a query that demands of a pose what another one does, and that nothing above the flutes is in stock."""

@@ -46,6 +46,11 @@ class StandingStock:
             points = points[_is_below(stock, other.to_local(frame.to_world(points)))]
         return StandingStock(points=points, cell=cell)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing stands."""
+        return not len(self.points)
+
     def beyond(self, thickness: float, points: Floats, normals: Floats) -> StandingStock:
         """Return what of it is farther than a thickness (mm) outside of a part with positions (s, 3) and normals (s, 3) spread over it."""
         if not len(self.points):

@@ -242,7 +242,7 @@ def point(
         around.clear_of_stock(q) for q in (drive.query_for(thickened(tool, thickness)), query)
     )
     done = PointMilledPasses(passes=(), rest=contact_lines, remaining=1.0)
-    for n, free in enumerate((wide, narrow, query)):
+    for n, free in enumerate((wide, narrow, query) if around.has_stock else (wide, query)):
         more = milled(
             done.rest,
             tool,
