@@ -163,24 +163,6 @@ def test_with_rotary_axes_it_is_roughed_from_two_sides_and_finished_leaning():
     assert not [f for f in process.findings if f.code == "route.not-planned"]
 
 
-def leaning_slab():
-    """Return a slab that leans by 20 degrees between two walls as high as it is."""
-    base = cq.Workplane("XY").box(30, 44, 6, centered=(True, True, False))
-    walls = base.translate((0, 0, 0))
-    for y in (-19.0, 19.0):
-        walls = walls.union(
-            cq.Workplane("XY").box(30, 6, 20, centered=(True, True, False)).translate((0, y, 0))
-        )
-    slab = cq.Workplane("YZ").polyline([(-5, 4), (0, 4), (6, 20), (1, 20)]).close()
-    return walls.union(slab.extrude(10, both=True)).val().wrapped
-
-
-def test_what_leans_over_its_own_foot_is_roughed_from_a_tilted_side_that_sees_all_of_it():
-    process = routed(leaning_slab(), **{"setup.machine": "Trunnion 650"}).process
-    (direction,) = {o.direction for o in process.operations if o.direction[2] < 1.0}
-    assert direction[1] > 0.0 and direction[2] > 0.8
-
-
 def test_an_operations_direction_is_in_the_xml_where_it_is_not_the_setups_z(session):
     process = session.process
     tilted = replace(process.operations[0], direction=(0.6, 0.0, 0.8))

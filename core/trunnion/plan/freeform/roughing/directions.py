@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.geometry.arrays import Bools
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
@@ -76,24 +77,30 @@ def sides_for(
         spaces.append(there)
         heights.append(local.point[:, 2])
         facing.append(local.normal[:, 2] > FACING)
-    found, remaining = [], np.ones(len(hidden), dtype=bool)
-    tilted = np.array(
-        [directions[k][2] > math.sin(tolerance.ANGLE) for k in range(len(directions))]
-    )
-    while remaining.any():
-        gained = np.array([int((one & remaining).sum()) for one in seen])
-        best = int(np.argmax(gained - EVEN * len(hidden) * tilted))
-        if gained[best] <= WORTH * len(hidden):
-            break
-        own = seen[best] & remaining
-        faces = own & facing[best]
+    tilted = np.array([d[2] > math.sin(tolerance.ANGLE) for d in directions])
+    found = []
+    for row, own in chosen(np.array(seen), tilted):
+        faces = own & facing[row]
         found.append(
             RoughingDirection(
-                space=spaces[best],
-                bottom=float(heights[best][faces if faces.any() else own].min()),
+                space=spaces[row],
+                bottom=float(heights[row][faces if faces.any() else own].min()),
             )
         )
-        remaining &= ~own
+    return found
+
+
+def chosen(seen: Bools, tilted: Bools) -> list[tuple[int, Bools]]:
+    """Return the rows of directions that see most of what those before them don't, and what (k,) that is, from what each sees (d, k) and
+    which are tilted (d,)."""
+    found, remaining = [], np.ones(seen.shape[1], dtype=bool)
+    while remaining.any():
+        gained = (seen & remaining).sum(axis=1)
+        row = int(np.argmax(gained - EVEN * len(remaining) * tilted))
+        if gained[row] <= WORTH * len(remaining):
+            break
+        found.append((row, seen[row] & remaining))
+        remaining &= ~seen[row]
     return found
 
 
