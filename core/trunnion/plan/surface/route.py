@@ -176,6 +176,7 @@ def _plan(state: SurfacePlanState, progress: Progress) -> None:
         share = progress.part(0.1 + 0.7 * n / len(areas), 0.1 + 0.7 * (n + 1) / len(areas))
         share.at(0.0, f"cutter for {area.id}")
         if area.hidden:
+            state.hanging.update(() if area.local else area.tags)
             _hidden_area(state, area, share)
         else:
             _area(state, area, level, share)
@@ -693,10 +694,12 @@ def _in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operatio
             if other.group in stage.after_all
             or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
             or other.id == o.id + FIRST
+            or (other.group == o.group and _is_over(state, other) and not _is_over(state, o))
             or (
                 o.kind in FALLING
                 and other.group == o.group
                 and other.cutter.diameter > o.cutter.diameter
+                and _is_over(state, other) == _is_over(state, o)
             )
         }
         done[o.id] = replace(o, after=tuple(sorted(before)))
@@ -710,6 +713,11 @@ def _in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operatio
             )
         )
     return [done[id] for id in ordered(jobs)]
+
+
+def _is_over(state: SurfacePlanState, operation: Operation) -> bool:
+    """Return whether an operation cuts hidden faces alone: what is left on them stands in the way of necks below, so they come first."""
+    return bool(operation.faces) and state.hanging.issuperset(operation.faces)
 
 
 def _position(state: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float]:
