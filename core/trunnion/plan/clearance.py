@@ -37,17 +37,17 @@ class ClearanceScene(Protocol):
         """Return which tool axes (k, 3), in the cutting frame, the machine can hold."""
 
 
-class Standing(Protocol):
-    """Material that stands, as positions (`toolpath.stock.standing.StandingStock`)."""
+class RemainingStockQuery(Protocol):
+    """Material that stands, as positions (`toolpath.stock.remaining.RemainingStock`)."""
 
     @property
     def is_empty(self) -> bool:
         """Whether nothing stands."""
 
-    def beyond(self, thickness: float, points: Floats, normals: Floats) -> Standing:
+    def beyond(self, thickness: float, points: Floats, normals: Floats) -> RemainingStockQuery:
         """Return what of it is farther than a thickness (mm) outside of a part with positions (s, 3) and normals (s, 3) all over."""
 
-    def is_clear(
+    def is_free(
         self,
         rows: Sequence[tuple[float, float, float, float]],
         tip: Floats,

@@ -22,7 +22,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
-from trunnion.plan.clearance import ClearanceScene, Standing
+from trunnion.plan.clearance import ClearanceScene, RemainingStockQuery
 from trunnion.progress import Progress
 from trunnion.registry import PLANNERS
 from trunnion.settings import Value, checked, choose
@@ -105,7 +105,7 @@ class Scene(Protocol):
     def stock(self, setup: Setup) -> StockHeights:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
 
-    def standing(self, frame: Frame) -> Standing:
+    def remaining_stock(self, frame: Frame) -> RemainingStockQuery:
         """Return what stands at this moment by all directions together, in a frame."""
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:

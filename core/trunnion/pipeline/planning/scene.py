@@ -23,7 +23,7 @@ from trunnion.progress import Progress
 from trunnion.settings import digest
 from trunnion.toolpath.motion.reorient import Pose
 from trunnion.toolpath.stock.heightfield import PlanningStock
-from trunnion.toolpath.stock.standing import StandingStock
+from trunnion.toolpath.stock.remaining import RemainingStock
 from trunnion.toolpath.stock.views import StockViews
 
 if TYPE_CHECKING:
@@ -85,9 +85,9 @@ class SetupScene:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
         return self.sides.seen(setup)
 
-    def standing(self, frame: Frame) -> StandingStock:
+    def remaining_stock(self, frame: Frame) -> RemainingStock:
         """Return what stands at this moment by all directions together, in a frame."""
-        return self.sides.standing(frame)
+        return self.sides.remaining_stock(frame)
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""

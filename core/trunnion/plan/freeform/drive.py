@@ -15,7 +15,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.clearance import ClearanceQuery, Standing
+from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 
 
 class ExactFace(Protocol):
@@ -69,7 +69,7 @@ class SurfaceDrive:
     blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
     in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` identifies all of this. `query_for`
     returns a tool's clearance query: which poses are clear of part and fixtures and within the machine's rotary limits
-    (`pipeline.planning.clearance`); None where no tool may lean. `standing` is the material that stands, None where nobody knows.
+    (`pipeline.planning.clearance`); None where no tool may lean. `remaining_stock` is the material that stands, None where nobody knows.
     """
 
     feature: str
@@ -86,7 +86,7 @@ class SurfaceDrive:
     digest: str
     earlier: Tool | None = None
     query_for: Callable[[Tool], ClearanceQuery] | None = None
-    standing: Standing | None = None
+    remaining_stock: RemainingStockQuery | None = None
 
     @property
     def is_empty(self) -> bool:

@@ -15,10 +15,10 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.part import Part
 from trunnion.part.shape.exact import ExactFace
-from trunnion.plan.clearance import ClearanceQuery, Standing
+from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.finishing.rest import left_upright, remaining_of, without_met
+from trunnion.plan.freeform.finishing.rest import remaining_of, remaining_upright, without_met
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
 from trunnion.progress import NO_PROGRESS, Progress
@@ -27,7 +27,7 @@ from trunnion.settings import digest
 AROUND = 45.0
 """mm: how far free space is looked at around the blank: two diameters of the largest cutter, but no way for it to wander."""
 
-LEFT = 2.0
+LEFTOVER = 2.0
 """Times the depth of cut: what operations before leave on faces at most."""
 
 
@@ -95,25 +95,30 @@ class SurfaceSpace:
         needs: DriveNeeds,
         earlier: Tool | None = None,
         query_for: Callable[[Tool], ClearanceQuery] | None = None,
-        standing: Standing | None = None,
+        remaining_stock: RemainingStockQuery | None = None,
         upright: Tool | None = None,
         progress: Progress = NO_PROGRESS,
     ) -> SurfaceDrive:
-        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for`
-        returns the clearance query of a tool, `standing` is the material that stands, `upright` the cutter that finished what an upright
-        one comes to.
+        """Return what an operation on curved faces is driven by.
+
+        `earlier` is the cutter that finished them before, `query_for` returns the clearance query of a tool, `remaining_stock` is the
+        material that stands, `upright` the cutter that finished what an upright one comes to.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part is none of its area.
         """
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
-        left = LEFT * operation.data.depth
+        thickness = LEFTOVER * operation.data.depth
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if earlier is not None and not needs.finds_rest:
             skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress)
         if upright is not None:
-            skin, faces = left_upright(skin, faces, upright, lowest, height, left, progress)
+            skin, faces = remaining_upright(
+                skin, faces, upright, lowest, height, thickness, progress
+            )
         if not needs.leans:
-            skin, faces = without_met(skin, faces, operation.cutter, lowest, height, left, progress)
+            skin, faces = without_met(
+                skin, faces, operation.cutter, lowest, height, thickness, progress
+            )
         identity = digest(
             self.part.digest,
             self.part.solid,
@@ -129,7 +134,7 @@ class SurfaceSpace:
             allowance,
             earlier,
             upright,
-            left,
+            thickness,
             needs.leans,
         )
         return SurfaceDrive(
@@ -147,5 +152,5 @@ class SurfaceSpace:
             digest=identity,
             earlier=earlier,
             query_for=query_for,
-            standing=standing,
+            remaining_stock=remaining_stock,
         )

@@ -36,8 +36,8 @@ def surface_driven(
     space = space_from(operation.direction, tolerance.SKIN_CHORD, scene, progress)
     around = scene.context.around(scene.setup, space.frame, space.skin, progress)
     earlier, upright = (_named(operation, key, scene) for key in (EARLIER, UPRIGHT_EARLIER))
-    standing = scene.standing(space.frame) if needs.leans else None
-    drive = space.drive_of(operation, needs, earlier, around, standing, upright, progress)
+    remaining_stock = scene.remaining_stock(space.frame) if needs.leans else None
+    drive = space.drive_of(operation, needs, earlier, around, remaining_stock, upright, progress)
     return OperationDrive(setup=space.setup, drive=drive, identity=(drive.digest, scene.fixtures))
 
 

@@ -456,10 +456,10 @@ def _area(state: SurfacePlanState, area: Area, level: FinishedLands, progress: P
                 raw, raw.tags, missed, math.radians(settings.steep)
             ):
                 _add_finish(state, "semi", name, mine, found.rest, strategy, missed)
-    _left_to_leaning(state, area, samples, found, progress)
+    _leaning_rest(state, area, samples, found, progress)
 
 
-def _left_to_leaning(
+def _leaning_rest(
     state: SurfacePlanState,
     area: Area,
     samples: AreaSamples,

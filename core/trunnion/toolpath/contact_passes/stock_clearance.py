@@ -1,7 +1,7 @@
 """Clearance of a leaning tool from stock: which poses keep neck, shank and holder out of it, and from where on rapids may go.
 
 Near the part earlier operations have left more or less everywhere: tools keep a thickness from the part itself. What stands beyond is
-known by positions (`plan.clearance.Standing`).
+known by positions (`plan.clearance.RemainingStockQuery`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.clearance import ClearanceQuery, Standing
+from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.reach import AreaSamples, samples_on
 from trunnion.toolpath.contact_passes.axis_search import thickened
@@ -37,15 +37,15 @@ class StockClearance:
     drive: SurfaceDrive
     tool: Tool
     thickness: float
-    beyond: Standing | None
+    beyond: RemainingStockQuery | None
 
     @staticmethod
     def of(drive: SurfaceDrive, tool: Tool, thickness: float) -> StockClearance:
         """Return the queries of a tool on a drive whose tools may lean."""
         beyond = None
-        if drive.standing is not None:
+        if drive.remaining_stock is not None:
             samples = _samples(drive.skin)
-            beyond = drive.standing.beyond(LEAST_STOCK, samples.point, samples.normal)
+            beyond = drive.remaining_stock.beyond(LEAST_STOCK, samples.point, samples.normal)
         return StockClearance(drive, tool, thickness, beyond)
 
     @property
@@ -53,7 +53,7 @@ class StockClearance:
         """Whether anything is known to stand."""
         return self.beyond is not None and not self.beyond.is_empty
 
-    def clear_of_stock(self, query: ClearanceQuery) -> ClearanceQuery:
+    def with_stock(self, query: ClearanceQuery) -> ClearanceQuery:
         """Return a query that demands of a pose what another one does, and that nothing above the flutes is in stock."""
         beyond = self.beyond
         if beyond is None:
@@ -68,7 +68,7 @@ class StockClearance:
             start_axis: Floats | None = None,
         ) -> Bools:
             tip, axis = (np.asarray(v, dtype=np.float64).reshape(-1, 3) for v in (tip, axis))
-            clear = beyond.is_clear(rows, tip, axis)
+            clear = beyond.is_free(rows, tip, axis)
             some = np.flatnonzero(clear)
             starts = [None if v is None else v[some] for v in (start_tip, start_axis)]
             clear[some] = query(tip[some], axis[some], start_tip=starts[0], start_axis=starts[1])
@@ -84,7 +84,7 @@ class StockClearance:
         wide = grown(self.tool, self.thickness)
         clear = self.drive.query_for(wide)(tips - self.thickness * axes, axes)
         if self.beyond is not None:
-            clear &= self.beyond.is_clear(_whole_body(self.tool, self.thickness), tips, axes)
+            clear &= self.beyond.is_free(_whole_body(self.tool, self.thickness), tips, axes)
         # Its body is nowhere slimmer than below: once it is clear it stays so.
         return float(lifts[np.argmax(clear)] if clear.any() else lifts[-1])
 

@@ -239,7 +239,7 @@ def point(
     thickness = max(STOCK_SHARE * data.depth, LEAST_STOCK)
     around = StockClearance.of(drive, tool, thickness)
     wide, narrow = (
-        around.clear_of_stock(q) for q in (drive.query_for(thickened(tool, thickness)), query)
+        around.with_stock(q) for q in (drive.query_for(thickened(tool, thickness)), query)
     )
     done = PointMilledPasses(passes=(), rest=contact_lines, remaining=1.0)
     for n, free in enumerate((wide, narrow, query) if around.has_stock else (wide, query)):

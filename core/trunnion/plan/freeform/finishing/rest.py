@@ -47,20 +47,20 @@ def remaining_of(
     return parted_near(skin, tags, over, _past(earlier, height), progress=progress)
 
 
-def left_upright(
+def remaining_upright(
     skin: Skin,
     tags: tuple[int, ...],
     earlier: Tool,
     lowest: float,
     height: float,
-    left: float = 0.0,
+    thickness: float = 0.0,
     progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter can't come to on faces given tags of its own, and those tags: where other faces lift it,
-    what hangs over, and where its neck, shank or holder would meet the part, or what is `left` (mm) on faces that hang over."""
+    what hangs over, and where its neck, shank or holder would meet the part, or a `thickness` (mm) left on faces that hang over."""
     lifted, met = (
         _lifted_over(skin, earlier, lowest, height, progress),
-        _met_over(skin, earlier, lowest, left, progress),
+        _met_over(skin, earlier, lowest, thickness, progress),
     )
 
     def over(position: Floats, normal: Floats) -> Floats:
@@ -96,14 +96,14 @@ def without_met(
     tool: Tool,
     lowest: float,
     height: float,
-    left: float = 0.0,
+    thickness: float = 0.0,
     progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin and the tags of what of faces an upright tool finishes without its shank or holder meeting the part: all of them
     where these meet nothing, else not what lies around such positions, twice as far as passes are apart at a scallop height in mm.
 
-    Neither do neck, shank and holder meet what is `left` (mm) on faces that hang over."""
-    over = _met_over(skin, tool, lowest, left, progress)
+    Neither do neck, shank and holder meet a `thickness` (mm) left on faces that hang over."""
+    over = _met_over(skin, tool, lowest, thickness, progress)
     rows = skin.triangles[skin.of(tags)]
     middle, normal = skin.points[rows].mean(axis=1), skin.normals[rows].mean(axis=1)
     normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
@@ -130,16 +130,16 @@ def without_met(
 
 
 def _met_over(
-    skin: Skin, tool: Tool, lowest: float, left: float, progress: Progress
+    skin: Skin, tool: Tool, lowest: float, thickness: float, progress: Progress
 ) -> Callable[..., Floats]:
     """Return how deep (p,) mm shank or holder of an upright tool are in the part at positions (p, 3) with normals (p, 3), all taken wider
     and lower by `more`; -inf where an upright tool doesn't touch.
 
-    What is no wider than the cutter goes where it has been, but under faces that hang over: there it meets what is `left` (mm) on them.
+    What is no wider than the cutter goes where it has been, but under faces that hang over: there it meets a `thickness` (mm) left on them.
     """
     rows = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile()]
     wider = [(z, r) for z, r in rows if r > tool.radius + tolerance.COINCIDENT]
-    hanging = hanging_over(skin) if left > 0.0 else None
+    overhang = overhanging(skin) if thickness > 0.0 else None
     highest = float(skin.points[:, 2].max())
 
     def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
@@ -148,7 +148,7 @@ def _met_over(
         tip, top = _drop(skin, position[up], normal[up], tool, lowest, progress)
         material_top = np.maximum(top, tip[:, 2])
         deepest = np.full(len(tip), -np.inf)
-        for surface, around, bodies in ((skin.drop, 0.0, wider), (hanging, left, rows)):
+        for surface, around, bodies in ((skin.drop, 0.0, wider), (overhang, thickness, rows)):
             for z, radius in bodies if surface is not None else ():
                 low = np.flatnonzero(material_top + z - more < highest)
                 if surface is not None and len(low):
@@ -161,7 +161,7 @@ def _met_over(
     return over
 
 
-def hanging_over(skin: Skin) -> DropSurface | None:
+def overhanging(skin: Skin) -> DropSurface | None:
     """Return what of a skin faces downwards above its lowest height, ready for dropping cutters on it; None where nothing does."""
     corners = skin.points[skin.triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -79,7 +79,7 @@ def sides_for(
         facing.append(local.normal[:, 2] > FACING)
     tilted = np.array([d[2] > math.sin(tolerance.ANGLE) for d in directions])
     found = []
-    for row, own in chosen(np.array(seen), tilted):
+    for row, own in selected(np.array(seen), tilted):
         faces = own & facing[row]
         found.append(
             RoughingDirection(
@@ -90,7 +90,7 @@ def sides_for(
     return found
 
 
-def chosen(seen: Bools, tilted: Bools) -> list[tuple[int, Bools]]:
+def selected(seen: Bools, tilted: Bools) -> list[tuple[int, Bools]]:
     """Return the rows of directions that see most of what those before them don't, and what (k,) that is, from what each sees (d, k) and
     which are tilted (d,)."""
     found, remaining = [], np.ones(seen.shape[1], dtype=bool)

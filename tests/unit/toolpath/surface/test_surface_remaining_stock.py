@@ -14,12 +14,12 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Box
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.model.setup import Setup
-from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, left_upright, without_met
+from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, remaining_upright, without_met
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stock_clearance import StockClearance, grown
 from trunnion.toolpath.stock.heightfield import PlanningStock
-from trunnion.toolpath.stock.standing import StandingStock
+from trunnion.toolpath.stock.remaining import RemainingStock
 from verify_tools import bull
 
 BALL = replace(bull(6.0, 3.0)(), flute_length=8.0, neck_length=20.0)
@@ -80,51 +80,51 @@ def test_the_compiled_kernel_and_the_plain_one_agree():
 
 
 def test_what_one_direction_has_cut_stands_no_more():
-    whole = StandingStock.of(BLANK, WORLD, [(PlanningStock.of(BLANK, SETUP), WORLD)])
+    whole = RemainingStock.of(BLANK, WORLD, [(PlanningStock.of(BLANK, SETUP), WORLD)])
     assert len(whole.points) * whole.cell**3 == pytest.approx(6000.0, rel=0.01)
-    cut = StandingStock.of(BLANK, WORLD, [(cleared(4.0, 20.0), WORLD)])
+    cut = RemainingStock.of(BLANK, WORLD, [(cleared(4.0, 20.0), WORLD)])
     gone = (cut.points[:, 0] > 20.5) & (cut.points[:, 2] > 4.5)
     assert not gone.any() and len(cut.points) < len(whole.points)
 
 
 def test_a_body_is_clear_where_nothing_stands_and_only_there():
-    stock = StandingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)])
+    stock = RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)])
     tips = np.array([[20.0, 10.0, 2.0], [12.0, 10.0, 2.0], [5.0, 10.0, 2.0]])
     shank = ((0.0, 2.0, 20.0, 2.0),)
-    assert stock.is_clear(shank, tips, np.tile(UPRIGHT, (3, 1))).tolist() == [True, False, False]
+    assert stock.is_free(shank, tips, np.tile(UPRIGHT, (3, 1))).tolist() == [True, False, False]
     # The same tip with its axis leaning towards what stands is in it.
     away, towards = LEANING, LEANING * [-1.0, 1.0, 1.0]
     tip = np.array([[16.0, 10.0, 2.0]] * 2)
-    assert stock.is_clear(shank, tip, np.array([away, towards])).tolist() == [True, False]
+    assert stock.is_free(shank, tip, np.array([away, towards])).tolist() == [True, False]
 
 
 def test_near_the_part_stock_is_not_counted_nor_is_the_part_itself():
-    stock = StandingStock.of(BLANK, WORLD, [(PlanningStock.of(BLANK, SETUP), WORLD)])
+    stock = RemainingStock.of(BLANK, WORLD, [(PlanningStock.of(BLANK, SETUP), WORLD)])
     floor = grid(lambda x, y: 4.0 + 0.0 * x, n=30)
     left = stock.beyond(2.0, floor.points, floor.normals)
     assert left.points[:, 2].min() > 6.0 and left.points[:, 2].max() > 9.0
 
 
-def clearance(standing, skin=None):
+def clearance(remaining_stock, skin=None):
     """Return the queries of a ball on a drive where nothing of the part is ever met."""
     drive, *_ = driven(skin or grid(lambda x, y: 0.0 * x, n=30))
     drive = replace(
         drive,
-        standing=standing,
+        remaining_stock=remaining_stock,
         query_for=lambda tool: lambda tip, axis, **_: np.ones(len(tip), bool),
     )
     return StockClearance.of(drive, BALL, 2.0)
 
 
 def test_a_leaning_tool_keeps_its_shank_out_of_stock_that_stands():
-    around = clearance(StandingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
-    query = around.clear_of_stock(lambda tip, axis, **_: np.ones(len(tip), bool))
+    around = clearance(RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
+    query = around.with_stock(lambda tip, axis, **_: np.ones(len(tip), bool))
     tip, axes = np.array([[16.0, 10.0, 0.0]] * 2), np.array([LEANING, LEANING * [-1.0, 1.0, 1.0]])
     assert query(tip, axes).tolist() == [True, False]
 
 
 def test_a_tool_goes_out_at_feed_until_it_has_left_the_stock():
-    around = clearance(StandingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
+    around = clearance(RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
     assert around.retreat(np.array([25.0, 10.0, 0.0]), LEANING) == 0.0
     assert around.retreat(np.array([8.0, 10.0, 1.0]), np.array(UPRIGHT)) >= 8.0
 
@@ -189,6 +189,6 @@ def test_under_stock_on_a_roof_an_upright_neck_leaves_the_floor_to_a_leaning_too
         middle = found.points[found.triangles[found.of(tags)]].mean(axis=1)
         beside = (middle[:, 0] > 13.0) & (middle[:, 0] < 14.5)
         assert beside.any() == (left == 0.0)
-        gone, given = left_upright(roofed(), (1,), BALL, -50.0, 0.02, left)
+        gone, given = remaining_upright(roofed(), (1,), BALL, -50.0, 0.02, left)
         handed = gone.points[gone.triangles[gone.of(given)]]
         assert handed[:, :, 0].max() == pytest.approx(past + 0.6, abs=0.6)

@@ -27,7 +27,7 @@ POSES = 2000
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class StandingStock:
+class RemainingStock:
     """Positions (k, 3) mm in material that stands, `cell` mm apart, in the frame of the poses that are held against it."""
 
     points: Floats
@@ -36,7 +36,7 @@ class StandingStock:
     @staticmethod
     def of(
         blank: Blank, frame: Frame, fields: Sequence[tuple[PlanningStock, Frame]]
-    ) -> StandingStock:
+    ) -> RemainingStock:
         """Return all that is not known to be gone: what lies in the blank and below every one of some fields, each with its frame."""
         low, high = blank.box_in(frame)
         cell = max(CELL, float(np.prod(high - low) / MOST) ** (1.0 / 3.0))
@@ -44,22 +44,22 @@ class StandingStock:
         points = low + (np.argwhere(np.ones(tuple(count), dtype=bool)) + 0.5) * (high - low) / count
         for stock, other in fields:
             points = points[_is_below(stock, other.to_local(frame.to_world(points)))]
-        return StandingStock(points=points, cell=cell)
+        return RemainingStock(points=points, cell=cell)
 
     @property
     def is_empty(self) -> bool:
         """Whether nothing stands."""
         return not len(self.points)
 
-    def beyond(self, thickness: float, points: Floats, normals: Floats) -> StandingStock:
+    def beyond(self, thickness: float, points: Floats, normals: Floats) -> RemainingStock:
         """Return what of it is farther than a thickness (mm) outside of a part with positions (s, 3) and normals (s, 3) spread over it."""
         if not len(self.points):
             return self
         away, row = cKDTree(points).query(self.points)
         outside = ((self.points - points[row]) * normals[row]).sum(axis=1) > 0.0
-        return StandingStock(points=self.points[outside & (away > thickness)], cell=self.cell)
+        return RemainingStock(points=self.points[outside & (away > thickness)], cell=self.cell)
 
-    def is_clear(
+    def is_free(
         self,
         rows: Sequence[tuple[float, float, float, float]],
         tip: Floats,
