@@ -6,7 +6,7 @@ known by positions (`plan.clearance.RemainingStockQuery`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -75,6 +75,17 @@ class StockClearance:
             return clear
 
         return both
+
+    def queries(
+        self, query_for: Callable[[Tool], ClearanceQuery], query: ClearanceQuery
+    ) -> tuple[ClearanceQuery, ...]:
+        """Return what poses are asked for, the safest first: clear of stock all over the part and of what stands beyond; of less on the
+        part; of what stands beyond alone; of the part, which `query` tells."""
+        found = [
+            self.with_stock(query_for(thickened(self.tool, t)))
+            for t in sorted({self.thickness, LEAST_STOCK}, reverse=True)
+        ]
+        return (*found, self.with_stock(query), query) if self.has_stock else (*found, query)
 
     def retreat(self, tip: Floats, axis: Floats) -> float:
         """Return how far in mm a tool at a tip (3,) goes out along its axis (3,) before the rest of the way is clear of everything."""

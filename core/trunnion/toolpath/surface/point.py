@@ -42,7 +42,6 @@ from trunnion.toolpath.contact_passes.axis_search import (
     FreeAxes,
     LeanLimits,
     free_axes,
-    thickened,
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
@@ -235,14 +234,11 @@ def point(
                     ),
                 )
             )
-    # Clear of the material that remains beside the faces and of what stands beyond; where no lean is, of this alone, then of the part.
     thickness = max(STOCK_SHARE * data.depth, LEAST_STOCK)
     around = StockClearance.of(drive, tool, thickness)
-    wide, narrow = (
-        around.with_stock(q) for q in (drive.query_for(thickened(tool, thickness)), query)
-    )
+    queries = around.queries(drive.query_for, query)
     done = PointMilledPasses(passes=(), rest=contact_lines, remaining=1.0)
-    for n, free in enumerate((wide, narrow, query) if around.has_stock else (wide, query)):
+    for n, free in enumerate(queries):
         more = milled(
             done.rest,
             tool,
@@ -251,7 +247,7 @@ def point(
             limits,
             settings.chord,
             drive.allowance,
-            progress.part(0.4 + 0.17 * n, 0.4 + 0.17 * (n + 1)),
+            progress.part(0.4 + 0.5 * n / len(queries), 0.4 + 0.5 * (n + 1) / len(queries)),
         )
         done = PointMilledPasses(
             passes=(*done.passes, *more.passes),

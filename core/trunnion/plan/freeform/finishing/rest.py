@@ -24,6 +24,8 @@ UNSEEN = 0.1
 """Of the scallop height: a cutter that is lifted by no more than this finishes a position."""
 AROUND = 0.3
 """mm at least that an area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
+LAP = 3.0
+"""Of the same: how far what is handed on to a leaning tool goes on."""
 MET, MOST = 1.5, 20_000
 """mm: the longest edge of triangles that are tested for shank or holder meeting something; and how many such squares there are at most."""
 QUERY_SPACING, DOUBT = 1.0, 1.5
@@ -66,7 +68,8 @@ def remaining_upright(
     def over(position: Floats, normal: Floats) -> Floats:
         return np.maximum(lifted(position, normal), met(position, normal))
 
-    return parted_near(skin, tags, over, _past(earlier, height), progress=progress)
+    # An upright one keeps off by two of these (`without_met`).
+    return parted_near(skin, tags, over, LAP * _past(earlier, height), progress=progress)
 
 
 def _past(tool: Tool, height: float) -> float:
