@@ -80,12 +80,17 @@ class StockClearance:
         self, query_for: Callable[[Tool], ClearanceQuery], query: ClearanceQuery
     ) -> tuple[ClearanceQuery, ...]:
         """Return what poses are asked for, the safest first: clear of stock all over the part and of what stands beyond; of less on the
-        part; of what stands beyond alone; of the part, which `query` tells."""
+        part; of what stands beyond alone; of the part, which `query` tells.
+
+        The last only where nothing is left on the faces: what leaves an allowance leaves out what no axis comes to safely, and finishing
+        finds what other leaning tools have cut meanwhile, which nobody keeps."""
         found = [
             self.with_stock(query_for(thickened(self.tool, t)))
             for t in sorted({self.thickness, LEAST_STOCK}, reverse=True)
         ]
-        return (*found, self.with_stock(query), query) if self.has_stock else (*found, query)
+        if not self.has_stock:
+            return (*found, query)
+        return (*found, self.with_stock(query), *(() if self.drive.allowance > 0.0 else (query,)))
 
     def retreat(self, tip: Floats, axis: Floats) -> float:
         """Return how far in mm a tool at a tip (3,) goes out along its axis (3,) before the rest of the way is clear of everything."""

@@ -136,6 +136,10 @@ def test_poses_are_asked_for_from_the_safest_to_those_clear_of_the_part_alone():
     assert widths == pytest.approx([4.0, 2.0]) and len(found) == 4 and found[-1] is bare
     tip, into = np.array([[16.0, 10.0, 0.0]]), np.array([LEANING * [-1.0, 1.0, 1.0]])
     assert [bool(q(tip, into)[0]) for q in found] == [False, False, False, True]
+    # What leaves an allowance goes nowhere with its shank in stock.
+    around = clearance(whole)
+    around = replace(around, drive=replace(around.drive, allowance=0.1))
+    assert [bool(q(tip, into)[0]) for q in around.queries(query_for, bare)] == [False] * 3
     nothing = replace(whole, points=np.zeros((0, 3)))
     assert len(clearance(nothing).queries(query_for, bare)) == 3
 
