@@ -1,14 +1,16 @@
-"""Protocols of clearance queries for tilted tools: contact of a pose with part and fixtures, and the machine's axis limits.
+"""Protocols of clearance queries for tilted tools: contact of a pose with part and fixtures, the machine's axis limits, and the stock.
 
 `pipeline.planning.clearance` meets them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
+from trunnion.progress import Progress
 
 
 class ClearanceQuery(Protocol):
@@ -33,3 +35,23 @@ class ClearanceScene(Protocol):
 
     def holds(self, axis: Floats) -> Bools:
         """Return which tool axes (k, 3), in the cutting frame, the machine can hold."""
+
+
+class RemainingStockQuery(Protocol):
+    """Material that stands, as positions (`toolpath.stock.remaining.RemainingStock`)."""
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing stands."""
+
+    def beyond(self, thickness: float, points: Floats, normals: Floats) -> RemainingStockQuery:
+        """Return what of it is farther than a thickness (mm) outside of a part with positions (s, 3) and normals (s, 3) all over."""
+
+    def is_free(
+        self,
+        rows: Sequence[tuple[float, float, float, float]],
+        tip: Floats,
+        axis: Floats,
+        progress: Progress = ...,
+    ) -> Bools:
+        """Return at which poses (k,) a body of cones (z0, r0, z1, r1) from the tip up holds nothing of it."""

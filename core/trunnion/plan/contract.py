@@ -23,7 +23,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
-from trunnion.plan.clearance import ClearanceScene
+from trunnion.plan.clearance import ClearanceScene, RemainingStockQuery
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.fixtures import PlanFixture, off_fixtures
 from trunnion.progress import Progress
@@ -114,6 +114,9 @@ class Scene(Protocol):
 
     def stock(self, setup: Setup) -> StockHeights:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
+
+    def remaining_stock(self, frame: Frame) -> RemainingStockQuery:
+        """Return what stands at this moment by all directions together, in a frame."""
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""

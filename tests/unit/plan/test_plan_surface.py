@@ -29,6 +29,7 @@ from trunnion.plan.freeform.finishing.areas import (
     hidden_areas,
     on_outline,
     walls_of,
+    with_joined_hollows,
 )
 from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.freeform.reach import reached, samples_on
@@ -298,6 +299,13 @@ def test_hollows_that_hang_together_are_apart_from_what_they_run_into():
         (round_,): False,
         (hollow,): True,
     }
+    # The hollow is cut with hidden ones that it hangs together with, and only then.
+    both = tuple(sorted((hollow, round_)))
+    tight = tuple(replace(f, sizes={"concave_radius": 2.0}) for f in found.features)
+    joined = Recognition(family="surface", features=tight)
+    assert with_joined_hollows(joined, graph, (round_,), both) == both
+    assert with_joined_hollows(joined, graph, (), both) == ()
+    assert with_joined_hollows(found, graph, (hollow,), both) == (hollow,)
 
 
 # the stock of several directions

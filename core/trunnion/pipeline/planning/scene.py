@@ -25,6 +25,7 @@ from trunnion.settings import digest
 from trunnion.toolpath.motion.load import LoadStock
 from trunnion.toolpath.motion.reorient import Pose
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.remaining import RemainingStock
 from trunnion.toolpath.stock.views import StockViews
 
 if TYPE_CHECKING:
@@ -93,6 +94,10 @@ class SetupScene:
     def stock(self, setup: Setup) -> PlanningStock:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
         return self.sides.seen(setup)
+
+    def remaining_stock(self, frame: Frame) -> RemainingStock:
+        """Return what stands at this moment by all directions together, in a frame."""
+        return self.sides.remaining_stock(frame)
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""

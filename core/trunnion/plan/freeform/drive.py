@@ -16,7 +16,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.clearance import ClearanceQuery
+from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 
 
 class ExactFace(Protocol):
@@ -71,7 +71,8 @@ class SurfaceDrive:
     blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
     in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` identifies all of this. `query_for`
     returns a tool's clearance query: which poses are clear of part and fixtures and within the machine's rotary limits
-    (`pipeline.planning.clearance`); None where no tool may lean. `findings` say what fixtures keep the cutter from.
+    (`pipeline.planning.clearance`); None where no tool may lean. `remaining_stock` is the material that stands, None where nobody knows.
+    `findings` say what fixtures keep the cutter from.
     """
 
     feature: str
@@ -88,9 +89,11 @@ class SurfaceDrive:
     digest: str
     earlier: Tool | None = None
     query_for: Callable[[Tool], ClearanceQuery] | None = None
+    remaining_stock: RemainingStockQuery | None = None
     findings: tuple[Finding, ...] = ()
 
     @property
     def is_empty(self) -> bool:
-        """Whether fixtures keep the cutter from all of the faces: else they are finished whatever is over them."""
-        return not self.faces and bool(self.findings)
+        """Whether earlier cutters left nothing of the faces, or fixtures keep the cutter from them; else they are finished whatever is
+        over them."""
+        return not self.faces

@@ -14,6 +14,9 @@ SCALLOP, ALLOWANCE, BOTTOM, CELL = (
 it goes down to, and the distance of the positions at which the part's height is measured."""
 EARLIER = "surface.earlier"
 """Key of an operation's choices: the name of the cutter that finished its faces before."""
+UPRIGHT_EARLIER = "surface.upright_earlier"
+"""Key of an operation's choices: the name of the smallest upright cutter that finished its faces before; a leaning one cuts what that one
+can't come to."""
 
 
 def number(operation: Operation, key: str) -> float:

@@ -16,10 +16,10 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.part import Part
 from trunnion.part.shape.exact import ExactFace
-from trunnion.plan.clearance import ClearanceQuery
+from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.finishing.rest import remaining_of, without_met
+from trunnion.plan.freeform.finishing.rest import remaining_of, remaining_upright, without_met
 from trunnion.plan.freeform.fixtures import OffsetFixture, RefusedArea, off_fixtures, with_fixtures
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
@@ -29,6 +29,9 @@ from trunnion.settings import digest
 
 AROUND = 45.0
 """mm: how far free space is looked at around the blank: two diameters of the largest cutter, but no way for it to wander."""
+
+LEFTOVER = 2.0
+"""Times the depth of cut: what operations before leave on faces at most."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -104,20 +107,31 @@ class SurfaceSpace:
         needs: DriveNeeds,
         earlier: Tool | None = None,
         query_for: Callable[[Tool], ClearanceQuery] | None = None,
+        remaining_stock: RemainingStockQuery | None = None,
+        upright: Tool | None = None,
         progress: Progress = NO_PROGRESS,
     ) -> SurfaceDrive:
-        """Return what an operation on curved faces is driven by; `earlier` is the cutter that finished them before, `query_for`
-        returns the clearance query of a tool.
+        """Return what an operation on curved faces is driven by.
+
+        `earlier` is the cutter that finished them before, `query_for` returns the clearance query of a tool, `remaining_stock` is the
+        material that stands, `upright` the cutter that finished what an upright one comes to.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part, or any of it a fixture of the setup,
         is none of its area.
         """
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
+        thickness = LEFTOVER * operation.data.depth
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if earlier is not None and not needs.finds_rest:
             skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress)
+        if upright is not None:
+            skin, faces = remaining_upright(
+                skin, faces, upright, lowest, height, thickness, progress
+            )
         if not needs.leans:
-            skin, faces = without_met(skin, faces, operation.cutter, lowest, height, progress)
+            skin, faces = without_met(
+                skin, faces, operation.cutter, lowest, height, thickness, progress
+            )
         fixtures, refused = self.fixtures(), None
         if fixtures and not needs.leans:
             skin, faces, refused = off_fixtures(
@@ -139,6 +153,8 @@ class SurfaceSpace:
             height,
             allowance,
             earlier,
+            upright,
+            thickness,
             needs.leans,
         )
         return SurfaceDrive(
@@ -156,6 +172,7 @@ class SurfaceSpace:
             digest=identity,
             earlier=earlier,
             query_for=query_for,
+            remaining_stock=remaining_stock,
             findings=() if refused is None else (self._finding(operation, refused),),
         )
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from trunnion import tolerance
 from trunnion.model.operation import Operation
-from trunnion.model.tool import rotating
+from trunnion.model.tool import Tool, rotating
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.freeform.frames import Direction
-from trunnion.plan.freeform.keys import EARLIER
+from trunnion.plan.freeform.keys import EARLIER, UPRIGHT_EARLIER
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import Progress
 
@@ -35,13 +35,19 @@ def surface_driven(
     """Return the surface drive of an operation, with the cutter that finished its faces before where the operation names one."""
     space = space_from(operation.direction, tolerance.SKIN_CHORD, scene, progress)
     around = scene.context.around(scene.setup, space.frame, space.skin, progress)
-    name = operation.choices.get(EARLIER, "")
-    named = next((t for t in scene.process.tools() if t.name == name), None)
-    earlier = rotating(named, operation.id) if named is not None else None
-    drive = space.drive_of(operation, needs, earlier, around, progress)
+    earlier, upright = (_named(operation, key, scene) for key in (EARLIER, UPRIGHT_EARLIER))
+    remaining_stock = scene.remaining_stock(space.frame) if needs.leans else None
+    drive = space.drive_of(operation, needs, earlier, around, remaining_stock, upright, progress)
     return OperationDrive(
         setup=space.setup,
         drive=drive,
         identity=(drive.digest, scene.fixtures),
         findings=drive.findings,
     )
+
+
+def _named(operation: Operation, key: str, scene: Scene) -> Tool | None:
+    """Return the cutter of the process that an operation names under a key of its choices; None where it names none."""
+    name = operation.choices.get(key, "")
+    named = next((t for t in scene.process.tools() if t.name == name), None)
+    return rotating(named, operation.id) if named is not None else None

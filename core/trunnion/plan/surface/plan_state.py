@@ -23,7 +23,8 @@ from trunnion.shop import Shop, Stage
 
 @dataclass(slots=True)
 class SurfacePlanState:
-    """What is known while one setup is planned; `unsampled` are the faces so small that no position of their area lies on them."""
+    """What is known while one setup is planned; `unsampled` are the faces so small that no position of their area lies on them, `hanging`
+    the hidden ones that are no hollows."""
 
     space: SurfaceSpace
     around: ClearanceScene
@@ -38,6 +39,7 @@ class SurfacePlanState:
     operations: list[Operation] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
     unsampled: set[int] = field(default_factory=set)
+    hanging: set[int] = field(default_factory=set)
 
     def cutters(self, use: str) -> tuple[Tool, ...]:
         """Return the catalogue's cutters for a use and the blank's material."""

@@ -23,7 +23,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.feasibility import too_large
-from trunnion.plan.freeform.cutters.choice import AreaCutters, cutter_for, named
+from trunnion.plan.freeform.cutters.choice import NEGLIGIBLE, AreaCutters, cutter_for, named
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.areas import (
     Area,
@@ -33,8 +33,16 @@ from trunnion.plan.freeform.finishing.areas import (
     hidden_areas,
     on_outline,
     walls_of,
+    with_joined_hollows,
 )
-from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
+from trunnion.plan.freeform.keys import (
+    ALLOWANCE,
+    BOTTOM,
+    CELL,
+    EARLIER,
+    SCALLOP,
+    UPRIGHT_EARLIER,
+)
 from trunnion.plan.freeform.lands import LAND, REST_LAND
 from trunnion.plan.freeform.reach import AreaSamples, is_clear_of_walls, leans, reached, samples_on
 from trunnion.plan.freeform.roughing.directions import sides_for
@@ -149,8 +157,14 @@ def _plan(state: SurfacePlanState, progress: Progress) -> None:
     for tags in progress.each(connected(walls, part.graph())):
         _outline(state, tags)
     level = plan_lands(state, set(mine) - set(walls), _finishers(state), progress.part(0.0, 0.05))
+    open_faces = set(mine) - set(walls) - level.tags
     hidden = (
-        _hidden(state, samples, set(mine) - set(walls) - level.tags, progress.part(0.05, 0.1))
+        with_joined_hollows(
+            state.recognition,
+            part.graph(),
+            _hidden(state, samples, open_faces, progress.part(0.05, 0.1)),
+            open_faces,
+        )
         if state.machine.rotary
         else ()
     )
@@ -162,6 +176,7 @@ def _plan(state: SurfacePlanState, progress: Progress) -> None:
         share = progress.part(0.1 + 0.7 * n / len(areas), 0.1 + 0.7 * (n + 1) / len(areas))
         share.at(0.0, f"cutter for {area.id}")
         if area.hidden:
+            state.hanging.update(() if area.local else area.tags)
             _hidden_area(state, area, share)
         else:
             _area(state, area, level, share)
@@ -441,6 +456,49 @@ def _area(state: SurfacePlanState, area: Area, level: FinishedLands, progress: P
                 raw, raw.tags, missed, math.radians(settings.steep)
             ):
                 _add_finish(state, "semi", name, mine, found.rest, strategy, missed)
+    _leaning_rest(state, area, samples, found, progress)
+
+
+def _leaning_rest(
+    state: SurfacePlanState,
+    area: Area,
+    samples: AreaSamples,
+    found: AreaCutters,
+    progress: Progress,
+) -> None:
+    """Plan for a leaning cutter what the upright ones of an area leave: what they can't touch, and what shank or holder keep them off."""
+    if found.tool is None or not state.machine.rotary:
+        return
+    last, seen = found.tool, found.reached.copy()
+    if found.rest is not None:
+        last = found.rest
+        missed = np.flatnonzero(~seen)
+        seen[missed] = reached(
+            state.space, samples.of(~seen), last, state.route.reach_clearance, 0.0, progress
+        )
+    tags = tuple(t for t in area.tags if not seen[samples.face == t].all())
+    if (~seen).sum() <= NEGLIGIBLE * len(seen):
+        return
+    every = max(1, int((~seen).sum()) // LEANING_SAMPLES)
+    few = samples.of(~seen & (np.cumsum(~seen) % every == 0))
+    leaning = leaning_cutter(
+        few, _leaning_finishers(state), state.around, state.settings.share, None, progress
+    )
+    if leaning.tool is None:
+        return
+    for kind in (
+        ("semi", "rest_finish") if state.settings.semi_allowance > 0.0 else ("rest_finish",)
+    ):
+        _add_finish(
+            state,
+            kind,
+            f"{area.id}{LEANING}",
+            tags,
+            leaning.tool,
+            "surface.point",
+            samples.of(~seen),
+            upright=last,
+        )
 
 
 def _hidden_area(state: SurfacePlanState, area: Area, progress: Progress) -> None:
@@ -502,6 +560,8 @@ FOR_SHALLOW = ("surface.parallel", "surface.constant")
 """Strategies for local features and for shallow faces, the best first."""
 STEEP = "surface.waterline"
 """The strategy for steep faces."""
+LEANING = "-leaning"
+"""Ends the name of an operation on what the upright cutters of an area can't come to."""
 FIRST = "-steep"
 """Ends the name of an operation on the steep positions of an area. It comes before the others there: from the top down it takes off what
 would stand in the way of a neck or shank at a wall's foot."""
@@ -534,6 +594,7 @@ def _add_finish(
     strategy: str,
     samples: AreaSamples,
     earlier: Tool | None = None,
+    upright: Tool | None = None,
 ) -> None:
     stage, settings = state.stages[kind], state.settings
     if strategy not in registry.names("strategies"):
@@ -569,6 +630,12 @@ def _add_finish(
         choices[key] = min(max(settings.steep + past, 1.0), 89.0)
     if earlier is not None:
         choices |= {EARLIER: earlier.name, f"{strategy}.lead_radius": REST_LEAD}
+    if upright is not None:
+        choices |= {
+            UPRIGHT_EARLIER: upright.name,
+            "surface.point.pattern": "constant",
+            "surface.point.lead_radius": REST_LEAD,
+        }
     state.add(
         kind,
         name,
@@ -627,10 +694,12 @@ def _in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operatio
             if other.group in stage.after_all
             or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
             or other.id == o.id + FIRST
+            or (other.group == o.group and _is_over(state, other) and not _is_over(state, o))
             or (
                 o.kind in FALLING
                 and other.group == o.group
                 and other.cutter.diameter > o.cutter.diameter
+                and _is_over(state, other) == _is_over(state, o)
             )
         }
         done[o.id] = replace(o, after=tuple(sorted(before)))
@@ -644,6 +713,11 @@ def _in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operatio
             )
         )
     return [done[id] for id in ordered(jobs)]
+
+
+def _is_over(state: SurfacePlanState, operation: Operation) -> bool:
+    """Return whether an operation cuts hidden faces alone: what is left on them stands in the way of necks below, so they come first."""
+    return bool(operation.faces) and state.hanging.issuperset(operation.faces)
 
 
 def _position(state: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float]:

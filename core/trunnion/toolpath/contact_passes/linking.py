@@ -8,7 +8,7 @@ where it would come below the dropped cutter.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -21,10 +21,13 @@ from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.toolpath.contact_passes.overhang import overhang_tops
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from trunnion.toolpath.contact_passes.stock_clearance import LEAST_STOCK, STOCK_SHARE
 from trunnion.toolpath.contact_passes.upright.tracing import follow, thinned
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_free, lowest_tip
@@ -49,7 +52,9 @@ class LinkParameters:
     """How passes are linked: the `stepover` between them, the `safety` distance of rapids and the `lead_radius` in mm; `order` is "given"
     or "nearest"; `reversing` allows passes to be cut the other way where that is nearer; `chord` is the chord error of links, mm. With
     `arcs` a near pass is reached by the leads of both, and above the stock where these have no space: for walls, beside which a cutter that
-    follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm."""
+    follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm. `retreat` says how far
+    in mm a tool at a tip (3,) with an axis (3,) is fed along it before it goes on at rapid; None: not at all.
+    `query` says which straight moves between near passes of a leaning tool are clear: the others are lifted over."""
 
     stepover: float
     safety: float = 2.0
@@ -59,6 +64,8 @@ class LinkParameters:
     chord: float = 2e-3
     arcs: bool = False
     overlap: float = 0.0
+    retreat: Callable[[Floats, Floats], float] | None = None
+    query: ClearanceQuery | None = None
 
 
 def linked(
@@ -92,7 +99,7 @@ def linked(
     else:
         links = iter(_links(passes, near, drive, tool, parameters, progress.part(0.4, 0.9)))
     # Assemble: a near pass is linked on the surface, a far one by its leads and a travel through the air.
-    blocks = _Blocks(tool, data, stock, setup, drive, parameters.safety)
+    blocks = _Blocks(tool, data, stock, setup, drive, parameters)
     for k, one in enumerate(passes):
         progress.at(0.9 + 0.1 * k / len(passes), "Linking passes")
         if k and near[k - 1]:
@@ -117,10 +124,12 @@ class _Blocks:
         stock: PlanningStock,
         setup: Setup,
         drive: SurfaceDrive,
-        safety: float,
+        parameters: LinkParameters,
     ) -> None:
         # A builder without a block: it answers how low the tip may go over the stock before the operation.
-        self._air = PathBuilder(tool, data, stock, setup, safety)
+        self._air = PathBuilder(tool, data, stock, setup, parameters.safety)
+        self._retreat = parameters.retreat
+        self._under = overhang_tops(drive.skin, tool, max(STOCK_SHARE * data.depth, LEAST_STOCK))
         self._tool, self._data, self._drive = tool, data, drive
         held = [
             drive.low,
@@ -161,6 +170,8 @@ class _Blocks:
                     self._rapid(np.append(stops[-1][:2], self.here[2]), UPRIGHT)
             for stop in stops[::-1]:
                 self._rapid(stop, axis)
+            if self._retreat is not None:
+                self._rapid(self._off(position, axis, stops[0]), axis)
         if _is_upright(axis):
             self._down(position)
         else:
@@ -186,8 +197,15 @@ class _Blocks:
         """Go over a position, upright: no higher than what may be in between demands."""
         safe = lowest_tip(self._air, self.here[:2], position[:2]) + self._air.safety
         height = min(max(safe, float(self.here[2]), float(position[2])), self._air.clearance)
+        self._rise(height)
         self._rapid(np.append(self.here[:2], height), UPRIGHT)
         self._rapid(np.append(position[:2], height), UPRIGHT)
+
+    def _rise(self, height: float) -> None:
+        """Feed up to a height at most as far as something hangs over beside the tool: what was left there stands in its way."""
+        top = self._under(self.here)
+        if top > self.here[2]:
+            self.feed(np.append(self.here[:2], min(top, height))[None], UPRIGHT, Mark.LEAD)
 
     def _down(self, position: Floats) -> None:
         """Come down upright: at rapid as far as the stock allows, then at feed, slowly where there is material."""
@@ -202,9 +220,19 @@ class _Blocks:
             self._add(position, UPRIGHT, Motion.LINE, self._data.plunge_feed, Mark.ENTRY)
 
     def _leave(self) -> None:
-        axis = self.axis
-        for stop in self._outside(self.here, axis):
+        axis, stops = self.axis, self._outside(self.here, self.axis)
+        if self._retreat is not None:
+            self.feed(self._off(self.here, axis, stops[0])[None], axis, Mark.LEAD)
+        elif _is_upright(axis):
+            self._rise(float(stops[0][2]))
+        for stop in stops:
             self._rapid(stop, axis)
+
+    def _off(self, here: Floats, axis: Floats, stop: Floats) -> Floats:
+        """Return the position on the way along its axis to a stop (3,) up to which the tool is fed from here."""
+        far = max(float((stop - here) @ axis), 0.0)
+        lift = self._retreat(here, axis) if self._retreat is not None else 0.0
+        return np.asarray(here + min(lift, far) * axis)
 
     def _outside(self, here: Floats, axis: Floats) -> list[Floats]:
         """Return the positions that a tool passes along its axis from the work up to clearance: past blank and fixtures and up
@@ -329,7 +357,11 @@ def _near(passes: Sequence[Pass], parameters: LinkParameters) -> Bools:
     )
     turned = np.array([np.abs(a.axis[-1] - b.axis[0]).max() for a, b in pairwise(passes)])
     near = np.linalg.norm(starts - ends, axis=1) <= NEAR * parameters.stepover
-    return np.asarray(near & (turned < SAME))
+    near &= turned < SAME
+    if parameters.query is not None and near.any():
+        axes = np.array([p.axis[-1] for p in passes[:-1]])[near]
+        near[near] = parameters.query(starts[near], axes, start_tip=ends[near], start_axis=axes)
+    return np.asarray(near)
 
 
 def _links(

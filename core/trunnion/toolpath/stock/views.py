@@ -21,6 +21,7 @@ from trunnion.model.tool import Tool
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.remaining import RemainingStock
 
 NEIGHBOURHOOD = 3
 """Cells that a position is compared with in another field, in each of its directions: the cells it may lie in for all of its own cell."""
@@ -52,6 +53,11 @@ class StockViews:
                     self._stocks[name], setup.frame, stock, self._frames[other], lowest, foot
                 )
         return self._stocks[name]
+
+    def remaining_stock(self, frame: Frame) -> RemainingStock:
+        """Return what stands of the blank by all directions together, in a frame."""
+        fields = [(stock, self._frames[name]) for name, stock in self._stocks.items()]
+        return RemainingStock.of(self._blank, frame, fields)
 
     def cut(
         self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS

@@ -42,13 +42,17 @@ from trunnion.toolpath.contact_passes.axis_search import (
     FreeAxes,
     LeanLimits,
     free_axes,
-    thickened,
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.stepover.fronts import scallop_passes
+from trunnion.toolpath.contact_passes.stock_clearance import (
+    LEAST_STOCK,
+    STOCK_SHARE,
+    StockClearance,
+)
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -59,9 +63,6 @@ SHARES = (0.25, 0.5, 0.75)
 HALVINGS = 12
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
-STOCK_SHARE, LEAST_STOCK = 2.0, 1.0
-"""How much material neck, shank and holder are kept clear of where there is space: times the depth of cut, and mm at least. Earlier cutters
-leave more in corners than on faces."""
 OVERLAP = 0.25
 """Of an earlier cutter's radius: how far what it left is cut beyond its end."""
 LEADS = (1.0, 0.4, 0.0)
@@ -233,39 +234,36 @@ def point(
                     ),
                 )
             )
-    # Clear of the material that remains beside the faces, and where no lean is, clear of the part itself.
-    wide = drive.query_for(thickened(tool, max(STOCK_SHARE * data.depth, LEAST_STOCK)))
-    done = milled(
-        contact_lines,
-        tool,
-        field,
-        wide,
-        limits,
-        settings.chord,
-        drive.allowance,
-        progress.part(0.4, 0.7),
-    )
-    tight = milled(
-        done.rest,
-        tool,
-        field,
-        query,
-        limits,
-        settings.chord,
-        drive.allowance,
-        progress.part(0.7, 0.9),
-    )
-    done = PointMilledPasses(
-        passes=(*done.passes, *tight.passes),
-        rest=tight.rest,
-        remaining=done.remaining * tight.remaining,
-    )
+    thickness = max(STOCK_SHARE * data.depth, LEAST_STOCK)
+    around = StockClearance.of(drive, tool, thickness)
+    queries = around.queries(drive.query_for, query)
+    done = PointMilledPasses(passes=(), rest=contact_lines, remaining=1.0)
+    for n, free in enumerate(queries):
+        more = milled(
+            done.rest,
+            tool,
+            field,
+            free,
+            limits,
+            settings.chord,
+            drive.allowance,
+            progress.part(0.4 + 0.5 * n / len(queries), 0.4 + 0.5 * (n + 1) / len(queries)),
+        )
+        done = PointMilledPasses(
+            passes=(*done.passes, *more.passes),
+            rest=more.rest,
+            remaining=done.remaining * more.remaining,
+        )
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
     findings = _remaining_findings(done, drive, tool)
     if not done.passes:
         return Planned(findings=(*pattern_findings, *findings))
     parameters = LinkParameters(
-        stepover=stepover, safety=settings.safety, lead_radius=settings.lead_radius
+        stepover=stepover,
+        safety=settings.safety,
+        lead_radius=settings.lead_radius,
+        retreat=around.retreat,
+        query=query,
     )
     path, met = _linked(
         done, drive, tool, data, stock, setup, parameters, query, progress.part(0.9, 1.0)

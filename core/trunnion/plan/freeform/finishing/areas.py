@@ -58,7 +58,7 @@ def hidden_areas(
 ) -> tuple[Area, ...]:
     """Return hidden faces as areas: planes by themselves, hollows that are too tight for large cutters where they hang together (the
     fillets round a blade), and the other curved faces where they do. Hollows count as local."""
-    tight = {tag for f in recognition if 0.0 < _radius(f) < TIGHT for tag in f.tags} & set(tags)
+    tight = _tight(recognition) & set(tags)
     flat = [tag for tag in sorted(tags) if graph.surface[tag - 1] == "plane"]
     found = [Area(id=f"face-{tag}", tags=(tag,), local=False, hidden=True) for tag in flat]
     for word, faces in (("hidden", set(tags) - tight - set(flat)), ("hollow", tight - set(flat))):
@@ -67,6 +67,26 @@ def hidden_areas(
             for n, each in enumerate(connected(faces, graph), 1)
         ]
     return tuple(found)
+
+
+def with_joined_hollows(
+    recognition: Recognition,
+    graph: FaceGraph,
+    hidden: Collection[int],
+    among: Collection[int],
+) -> tuple[int, ...]:
+    """Return hidden faces with those `among` others that are tight hollows and hang together with hidden ones: the fillets round a blade
+    are one area, though an upright cutter comes to some of them."""
+    found = set(hidden)
+    for tags in connected(_tight(recognition) & (set(among) | found), graph):
+        if found & set(tags):
+            found |= set(tags)
+    return tuple(sorted(found))
+
+
+def _tight(recognition: Recognition) -> set[int]:
+    """Return the faces that are hollows too tight for large cutters."""
+    return {tag for f in recognition if 0.0 < _radius(f) < TIGHT for tag in f.tags}
 
 
 def _radius(feature: Feature) -> float:

@@ -4,12 +4,14 @@ cutter's area, for its shank or holder would meet the part there."""
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sheet.skin import Skin
+from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
@@ -22,6 +24,8 @@ UNSEEN = 0.1
 """Of the scallop height: a cutter that is lifted by no more than this finishes a position."""
 AROUND = 0.3
 """mm at least that an area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
+LAP = 3.0
+"""Of the same: how far what is handed on to a leaning tool goes on."""
 MET, MOST = 1.5, 20_000
 """mm: the longest edge of triangles that are tested for shank or holder meeting something; and how many such squares there are at most."""
 QUERY_SPACING, DOUBT = 1.0, 1.5
@@ -41,22 +45,52 @@ def remaining_of(
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
     in mm that is wanted."""
+    over = _lifted_over(skin, earlier, lowest, height, progress)
+    return parted_near(skin, tags, over, _past(earlier, height), progress=progress)
+
+
+def remaining_upright(
+    skin: Skin,
+    tags: tuple[int, ...],
+    earlier: Tool,
+    lowest: float,
+    height: float,
+    thickness: float = 0.0,
+    progress: Progress = NO_PROGRESS,
+) -> tuple[Skin, tuple[int, ...]]:
+    """Return the skin with what an upright cutter can't come to on faces given tags of its own, and those tags: where other faces lift it,
+    what hangs over, and where its neck, shank or holder would meet the part, or a `thickness` (mm) left on faces that hang over."""
+    lifted, met = (
+        _lifted_over(skin, earlier, lowest, height, progress),
+        _met_over(skin, earlier, lowest, thickness, progress),
+    )
+
+    def over(position: Floats, normal: Floats) -> Floats:
+        return np.maximum(lifted(position, normal), met(position, normal))
+
+    # An upright one keeps off by two of these (`without_met`).
+    return parted_near(skin, tags, over, LAP * _past(earlier, height), progress=progress)
+
+
+def _past(tool: Tool, height: float) -> float:
+    """Return how far in mm an area goes on past what a cutter left."""
+    return max(AROUND, stepover_on_plane(tool.corner_radius, height))
+
+
+def _lifted_over(
+    skin: Skin, tool: Tool, lowest: float, height: float, progress: Progress
+) -> Callable[[Floats, Floats], Floats]:
+    """Return how far (p,) mm an upright cutter is lifted off positions (p, 3) with normals (p, 3) past what nobody sees."""
     limit = min(UNSEEN * height, LIFTED)
 
     def over(position: Floats, normal: Floats) -> Floats:
         lift = np.full(len(position), np.inf)
         up = normal[:, 2] > 0.0
-        tip, top = _drop(skin, position[up], normal[up], earlier, lowest, progress)
+        tip, top = _drop(skin, position[up], normal[up], tool, lowest, progress)
         lift[up] = top - tip[:, 2] - limit
         return lift
 
-    return parted_near(
-        skin,
-        tags,
-        over,
-        max(AROUND, stepover_on_plane(earlier.corner_radius, height)),
-        progress=progress,
-    )
+    return over
 
 
 def without_met(
@@ -65,33 +99,14 @@ def without_met(
     tool: Tool,
     lowest: float,
     height: float,
+    thickness: float = 0.0,
     progress: Progress = NO_PROGRESS,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin and the tags of what of faces an upright tool finishes without its shank or holder meeting the part: all of them
-    where these meet nothing, else not what lies around such positions, twice as far as passes are apart at a scallop height in mm."""
-    wider = [
-        (z0, max(r0, r1))
-        for z0, r0, _, r1 in tool.profile()
-        if max(r0, r1) > tool.radius + tolerance.COINCIDENT
-    ]
-    highest = float(skin.points[:, 2].max())
+    where these meet nothing, else not what lies around such positions, twice as far as passes are apart at a scallop height in mm.
 
-    def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
-        met = np.full(len(position), -np.inf)
-        up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        tip, top = _drop(skin, position[up], normal[up], tool, lowest, progress)
-        material_top = np.maximum(top, tip[:, 2])
-        deepest = np.full(len(tip), -np.inf)
-        for z, radius in wider:
-            low = np.flatnonzero(material_top + z - more < highest)
-            if len(low):
-                wall_top = skin.drop.drop(
-                    tip[low, :2], level_disc(radius + HOLDER_CLEARANCE + more), lowest, progress
-                )
-                deepest[low] = np.maximum(deepest[low], wall_top - material_top[low] - z + more)
-        met[up] = deepest
-        return met
-
+    Neither do neck, shank and holder meet a `thickness` (mm) left on faces that hang over."""
+    over = _met_over(skin, tool, lowest, thickness, progress)
     rows = skin.triangles[skin.of(tags)]
     middle, normal = skin.points[rows].mean(axis=1), skin.normals[rows].mean(axis=1)
     normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
@@ -115,6 +130,47 @@ def without_met(
         skin, tags, over, around, max(MET, math.sqrt(area / MOST)), progress
     )
     return (met_skin, tuple(t for t in tags if met_skin.of((t,)).any())) if met else (skin, tags)
+
+
+def _met_over(
+    skin: Skin, tool: Tool, lowest: float, thickness: float, progress: Progress
+) -> Callable[..., Floats]:
+    """Return how deep (p,) mm shank or holder of an upright tool are in the part at positions (p, 3) with normals (p, 3), all taken wider
+    and lower by `more`; -inf where an upright tool doesn't touch.
+
+    What is no wider than the cutter goes where it has been, but under faces that hang over: there it meets a `thickness` (mm) left on them.
+    """
+    rows = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile()]
+    wider = [(z, r) for z, r in rows if r > tool.radius + tolerance.COINCIDENT]
+    overhang = overhanging(skin) if thickness > 0.0 else None
+    highest = float(skin.points[:, 2].max())
+
+    def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
+        met = np.full(len(position), -np.inf)
+        up = normal[:, 2] > -math.sin(tolerance.ANGLE)
+        tip, top = _drop(skin, position[up], normal[up], tool, lowest, progress)
+        material_top = np.maximum(top, tip[:, 2])
+        deepest = np.full(len(tip), -np.inf)
+        for surface, around, bodies in ((skin.drop, 0.0, wider), (overhang, thickness, rows)):
+            for z, radius in bodies if surface is not None else ():
+                low = np.flatnonzero(material_top + z - more < highest)
+                if surface is not None and len(low):
+                    disc = level_disc(radius + around + HOLDER_CLEARANCE + more)
+                    wall_top = surface.drop(tip[low, :2], disc, lowest, progress)
+                    deepest[low] = np.maximum(deepest[low], wall_top - material_top[low] - z + more)
+        met[up] = deepest
+        return met
+
+    return over
+
+
+def overhanging(skin: Skin) -> DropSurface | None:
+    """Return what of a skin faces downwards above its lowest height, ready for dropping cutters on it; None where nothing does."""
+    corners = skin.points[skin.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    hangs = normal[:, 2] < -math.sin(tolerance.ANGLE) * np.linalg.norm(normal, axis=1)
+    hangs &= corners[:, :, 2].max(axis=1) > float(skin.points[:, 2].min()) + tolerance.SEW
+    return DropSurface.of(skin.points, skin.triangles[hangs]) if hangs.any() else None
 
 
 def _drop(

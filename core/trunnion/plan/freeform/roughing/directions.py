@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.geometry.arrays import Bools
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
@@ -17,12 +18,15 @@ from trunnion.plan.freeform.reach import AreaSamples, reached
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import Progress
 
-TILTS = (math.radians(90.0), math.radians(60.0))
-"""How far from upright directions are tried, all round."""
+TILTS = (math.radians(90.0), math.radians(60.0), math.radians(30.0))
+"""How far from upright directions are tried, all round: from slightly tilted ones a tool comes to what leans over its own foot."""
 ROUND = 8
 """Directions all round: the setup's axes first."""
 WORTH = 0.1
 """Share of what is hidden that another direction must see to be worth its turn."""
+EVEN = 0.05
+"""Share of what is hidden by which a tilted direction must see more than a level one to be taken before it: level ones leave most space
+for the spindle, and what they see lies in even layers."""
 FACING = math.sin(math.radians(10.0))
 """Cosine of the angle from a direction from which on a position looks along it rather than at it: such a one says not how deep to go."""
 OFF = 0.3
@@ -73,27 +77,30 @@ def sides_for(
         spaces.append(there)
         heights.append(local.point[:, 2])
         facing.append(local.normal[:, 2] > FACING)
-    found, remaining = [], np.ones(len(hidden), dtype=bool)
-    for tilt in range(len(TILTS)):
-        # Level directions first: they leave most space for the spindle, and what they see lies in even layers.
-        rows = [
-            k
-            for k, d in enumerate(directions)
-            if abs(d[2] - math.cos(TILTS[tilt])) < tolerance.ANGLE
-        ]
-        while rows and remaining.any():
-            best = max(rows, key=lambda k: (int((seen[k] & remaining).sum()), -k))
-            gained = seen[best] & remaining
-            if gained.sum() <= WORTH * len(hidden):
-                break
-            faces = gained & facing[best]
-            found.append(
-                RoughingDirection(
-                    space=spaces[best],
-                    bottom=float(heights[best][faces if faces.any() else gained].min()),
-                )
+    tilted = np.array([d[2] > math.sin(tolerance.ANGLE) for d in directions])
+    found = []
+    for row, own in selected(np.array(seen), tilted):
+        faces = own & facing[row]
+        found.append(
+            RoughingDirection(
+                space=spaces[row],
+                bottom=float(heights[row][faces if faces.any() else own].min()),
             )
-            remaining &= ~gained
+        )
+    return found
+
+
+def selected(seen: Bools, tilted: Bools) -> list[tuple[int, Bools]]:
+    """Return the rows of directions that see most of what those before them don't, and what (k,) that is, from what each sees (d, k) and
+    which are tilted (d,)."""
+    found, remaining = [], np.ones(seen.shape[1], dtype=bool)
+    while remaining.any():
+        gained = (seen & remaining).sum(axis=1)
+        row = int(np.argmax(gained - EVEN * len(remaining) * tilted))
+        if gained[row] <= WORTH * len(remaining):
+            break
+        found.append((row, seen[row] & remaining))
+        remaining &= ~seen[row]
     return found
 
 

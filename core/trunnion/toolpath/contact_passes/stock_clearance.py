@@ -1,0 +1,140 @@
+"""Clearance of a leaning tool from stock: which poses keep neck, shank and holder out of it, and from where on rapids may go.
+
+Near the part earlier operations have left more or less everywhere: tools keep a thickness from the part itself. What stands beyond is
+known by positions (`plan.clearance.RemainingStockQuery`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.sheet.skin import Skin
+from trunnion.model.tool import Tool
+from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.reach import AreaSamples, samples_on
+from trunnion.toolpath.contact_passes.axis_search import thickened
+
+STOCK_SHARE, LEAST_STOCK = 2.0, 1.0
+"""How much material near the part tools are kept clear of where there is space: times the depth of cut, and mm at least. Earlier cutters
+leave more in corners than on faces."""
+EACH, MOST = 0.5, 60_000
+"""mm2 of the part for each of the samples that say how far stock is off it, and the most of them."""
+LIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
+"""mm along its axis that a tool is moved off at feed until a rapid touches nothing: the first of them that does, or the last."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StockClearance:
+    """Queries of one tool among stock: up to a `thickness` (mm) it may stand anywhere on the part, `beyond` is what is known to stand
+    farther off."""
+
+    drive: SurfaceDrive
+    tool: Tool
+    thickness: float
+    beyond: RemainingStockQuery | None
+
+    @staticmethod
+    def of(drive: SurfaceDrive, tool: Tool, thickness: float) -> StockClearance:
+        """Return the queries of a tool on a drive whose tools may lean."""
+        beyond = None
+        if drive.remaining_stock is not None:
+            samples = _samples(drive.skin)
+            beyond = drive.remaining_stock.beyond(LEAST_STOCK, samples.point, samples.normal)
+        return StockClearance(drive, tool, thickness, beyond)
+
+    @property
+    def has_stock(self) -> bool:
+        """Whether anything is known to stand."""
+        return self.beyond is not None and not self.beyond.is_empty
+
+    def with_stock(self, query: ClearanceQuery) -> ClearanceQuery:
+        """Return a query that demands of a pose what another one does, and that nothing above the flutes is in stock."""
+        beyond = self.beyond
+        if beyond is None:
+            return query
+        rows = thickened(self.tool, tolerance.HOLDER_CLEARANCE).profile()
+
+        def both(
+            tip: Floats,
+            axis: Floats,
+            *,
+            start_tip: Floats | None = None,
+            start_axis: Floats | None = None,
+        ) -> Bools:
+            tip, axis = (np.asarray(v, dtype=np.float64).reshape(-1, 3) for v in (tip, axis))
+            clear = beyond.is_free(rows, tip, axis)
+            some = np.flatnonzero(clear)
+            starts = [None if v is None else v[some] for v in (start_tip, start_axis)]
+            clear[some] = query(tip[some], axis[some], start_tip=starts[0], start_axis=starts[1])
+            return clear
+
+        return both
+
+    def queries(
+        self, query_for: Callable[[Tool], ClearanceQuery], query: ClearanceQuery
+    ) -> tuple[ClearanceQuery, ...]:
+        """Return what poses are asked for, the safest first: clear of stock all over the part and of what stands beyond; of less on the
+        part; of what stands beyond alone; of the part, which `query` tells.
+
+        The last only where nothing is left on the faces: what leaves an allowance leaves out what no axis comes to safely, and finishing
+        finds what other leaning tools have cut meanwhile, which nobody keeps."""
+        found = [
+            self.with_stock(query_for(thickened(self.tool, t)))
+            for t in sorted({self.thickness, LEAST_STOCK}, reverse=True)
+        ]
+        if not self.has_stock:
+            return (*found, query)
+        return (*found, self.with_stock(query), *(() if self.drive.allowance > 0.0 else (query,)))
+
+    def retreat(self, tip: Floats, axis: Floats) -> float:
+        """Return how far in mm a tool at a tip (3,) goes out along its axis (3,) before the rest of the way is clear of everything."""
+        assert self.drive.query_for is not None
+        lifts = np.array(LIFTS)
+        tips, axes = tip + lifts[:, None] * axis, np.tile(axis, (len(lifts), 1))
+        wide = grown(self.tool, self.thickness)
+        clear = self.drive.query_for(wide)(tips - self.thickness * axes, axes)
+        if self.beyond is not None:
+            clear &= self.beyond.is_free(_whole_body(self.tool, self.thickness), tips, axes)
+        # Its body is nowhere slimmer than below: once it is clear it stays so.
+        return float(lifts[np.argmax(clear)] if clear.any() else lifts[-1])
+
+
+def grown(tool: Tool, thickness: float) -> Tool:
+    """Return a tool that is thicker all round by a thickness in mm, nowhere slimmer than below; its tip is that much lower."""
+    wide = thickened(tool, thickness)
+    across = tool.diameter + 2.0 * thickness
+    neck = max(wide.neck_diameter, across)
+    return replace(
+        wide,
+        diameter=across,
+        corner_radius=tool.corner_radius + thickness,
+        neck_diameter=neck,
+        shank_diameter=max(wide.shank_diameter, neck),
+        flute_length=tool.flute_length + thickness,
+        neck_length=tool.neck_length + thickness,
+        stickout=tool.stickout + thickness,
+        gauge_length=tool.gauge_length + thickness,
+    )
+
+
+def _whole_body(tool: Tool, wider: float) -> Sequence[tuple[float, float, float, float]]:
+    """Return a whole tool as cones (z0, r0, z1, r1) from the tip up, wider by some mm all round and nowhere slimmer than below."""
+    rows, widest = [(-wider, tool.radius, tool.flute_length, tool.radius)], tool.radius
+    for z0, r0, z1, r1 in tool.profile():
+        rows.append((z0, max(r0, widest), z1, max(r1, widest)))
+        widest = max(widest, r0, r1)
+    return [(z0, r0 + wider, z1, r1 + wider) for z0, r0, z1, r1 in rows]
+
+
+def _samples(skin: Skin) -> AreaSamples:
+    corners = skin.points[skin.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = 0.5 * float(np.linalg.norm(across, axis=1).sum())
+    tags = tuple(int(t) for t in np.unique(skin.face))
+    return samples_on(skin, tags, int(min(max(area / EACH, 1.0), MOST)))

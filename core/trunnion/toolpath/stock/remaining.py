@@ -1,0 +1,91 @@
+"""What stands over a part beyond a thickness: positions in the blank that no field of heights has above it, for bodies to keep clear of.
+
+Fields of heights know nothing of what leaning tools have cut, so that there is never less than this says but in gaps between the
+positions, by which bodies are taken wider.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.frame import Frame
+from trunnion.geometry.kernels.bodies import bodies_hold
+from trunnion.model.blank import Blank
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.toolpath.stock.heightfield import PlanningStock
+
+CELL, MOST = 1.0, 400_000
+"""mm between positions, and how many of them a blank has at most: beyond, they lie farther apart."""
+POSES = 2000
+"""Poses that are held against what stands between two looks at cancel."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RemainingStock:
+    """Positions (k, 3) mm in material that stands, `cell` mm apart, in the frame of the poses that are held against it."""
+
+    points: Floats
+    cell: float
+
+    @staticmethod
+    def of(
+        blank: Blank, frame: Frame, fields: Sequence[tuple[PlanningStock, Frame]]
+    ) -> RemainingStock:
+        """Return all that is not known to be gone: what lies in the blank and below every one of some fields, each with its frame."""
+        low, high = blank.box_in(frame)
+        cell = max(CELL, float(np.prod(high - low) / MOST) ** (1.0 / 3.0))
+        count = np.maximum(np.ceil((high - low) / cell), 1).astype(int)
+        points = low + (np.argwhere(np.ones(tuple(count), dtype=bool)) + 0.5) * (high - low) / count
+        for stock, other in fields:
+            points = points[_is_below(stock, other.to_local(frame.to_world(points)))]
+        return RemainingStock(points=points, cell=cell)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing stands."""
+        return not len(self.points)
+
+    def beyond(self, thickness: float, points: Floats, normals: Floats) -> RemainingStock:
+        """Return what of it is farther than a thickness (mm) outside of a part with positions (s, 3) and normals (s, 3) spread over it."""
+        if not len(self.points):
+            return self
+        away, row = cKDTree(points).query(self.points)
+        outside = ((self.points - points[row]) * normals[row]).sum(axis=1) > 0.0
+        return RemainingStock(points=self.points[outside & (away > thickness)], cell=self.cell)
+
+    def is_free(
+        self,
+        rows: Sequence[tuple[float, float, float, float]],
+        tip: Floats,
+        axis: Floats,
+        progress: Progress = NO_PROGRESS,
+    ) -> Bools:
+        """Return at which poses (k,) a body of cones (z0, r0, z1, r1) from the tip up holds nothing of it."""
+        wider = 0.5 * math.sqrt(3.0) * self.cell
+        body = np.array([(z0 - wider, r0 + wider, z1, r1 + wider) for z0, r0, z1, r1 in rows])
+        held = np.zeros(len(tip), dtype=bool)
+        if len(self.points) and len(body):
+            for first in progress.each(range(0, len(tip), POSES)):
+                some = slice(first, first + POSES)
+                bodies_hold(
+                    self.points,
+                    np.ascontiguousarray(tip[some]),
+                    np.ascontiguousarray(axis[some]),
+                    body,
+                    held[some],
+                )
+        return ~held
+
+
+def _is_below(stock: PlanningStock, points: Floats) -> Bools:
+    """Return which points (k, 3) in a field's frame it doesn't know to be gone; beside the field nothing stands."""
+    cell = np.floor((points[:, :2] - stock.corner) / stock.cell).astype(np.int64)
+    last = np.array(stock.heights.shape) - 1
+    inside = ((cell >= 0) & (cell <= last)).all(axis=1)
+    return np.asarray(inside & (points[:, 2] < stock.heights[tuple(np.clip(cell, 0, last).T)]))

@@ -1,0 +1,217 @@
+"""Tools among stock that stands: what is known of it, which poses keep out of it, and links under what hangs over."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from surface_drives import DATA, driven, grid, joined
+from trunnion.geometry.frame import WORLD
+from trunnion.geometry.kernels.bodies import bodies_hold, bodies_hold_reference
+from trunnion.geometry.sheet.skin import Skin
+from trunnion.model.blank import Box
+from trunnion.model.motion.toolpath import Mark, Motion
+from trunnion.model.setup import Setup
+from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, remaining_upright, without_met
+from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from trunnion.toolpath.contact_passes.stock_clearance import StockClearance, grown
+from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.remaining import RemainingStock
+from verify_tools import bull
+
+BALL = replace(bull(6.0, 3.0)(), flute_length=8.0, neck_length=20.0)
+MANNER = LinkParameters(stepover=0.5, lead_radius=1.0)
+BLANK = Box(
+    frame=WORLD,
+    low=np.zeros(3),
+    high=np.array([30.0, 20.0, 10.0]),
+    material="7050-T7451",
+    density=2.83,
+)
+SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=15.0, machine="Trunnion 650")
+LEANING = np.array([0.6, 0.0, 0.8])
+
+
+def cleared(depth, past):
+    """Return the field of the blank cut down to a depth where x is greater than `past`."""
+    stock = PlanningStock.of(BLANK, SETUP)
+    heights = stock.heights.copy()
+    rows = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell > past
+    heights[rows] = depth
+    return replace(stock, heights=heights)
+
+
+def straight(start, end, axis=UPRIGHT):
+    tips = np.array([start, end], dtype=float)
+    return Pass(tip=tips, axis=np.tile(axis, (2, 1)), normal=np.tile(UPRIGHT, (2, 1)))
+
+
+def leaf(height, low, high):
+    """Return a level leaf over a rectangle that looks down, as its triangles have it: face 2."""
+    skin = grid(lambda x, y: height + 0.0 * x, n=4, low=low, high=high, tag=2)
+    return Skin(
+        points=skin.points,
+        normals=-skin.normals,
+        triangles=skin.triangles[:, ::-1],
+        face=skin.face,
+        bound=0.0,
+    )
+
+
+def roofed():
+    """Return a level floor of 30 by 30 mm at height 0 and a roof over its first 10 mm, 12 mm higher."""
+    floor = grid(lambda x, y: 0.0 * x, n=30)
+    return joined(floor, leaf(12.0, (0.0, 0.0), (10.0, 30.0)))
+
+
+def test_the_compiled_kernel_and_the_plain_one_agree():
+    pick = np.random.default_rng(3)
+    points, tips = pick.uniform(-10.0, 10.0, (60, 3)), pick.uniform(-10.0, 10.0, (40, 3))
+    axes = pick.normal(size=(40, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    rows = np.array([[0.0, 1.0, 4.0, 1.0], [4.0, 1.0, 6.0, 3.0], [6.0, 5.0, 9.0, 5.0]])
+    found, plain = np.zeros(40, bool), np.zeros(40, bool)
+    bodies_hold(points, tips, axes, rows, found)
+    bodies_hold_reference(points, tips, axes, rows, plain)
+    assert (found == plain).all() and 0 < found.sum() < 40
+
+
+def test_what_one_direction_has_cut_stands_no_more():
+    whole = RemainingStock.of(BLANK, WORLD, [(PlanningStock.of(BLANK, SETUP), WORLD)])
+    assert len(whole.points) * whole.cell**3 == pytest.approx(6000.0, rel=0.01)
+    cut = RemainingStock.of(BLANK, WORLD, [(cleared(4.0, 20.0), WORLD)])
+    gone = (cut.points[:, 0] > 20.5) & (cut.points[:, 2] > 4.5)
+    assert not gone.any() and len(cut.points) < len(whole.points)
+
+
+def test_a_body_is_clear_where_nothing_stands_and_only_there():
+    stock = RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)])
+    tips = np.array([[20.0, 10.0, 2.0], [12.0, 10.0, 2.0], [5.0, 10.0, 2.0]])
+    shank = ((0.0, 2.0, 20.0, 2.0),)
+    assert stock.is_free(shank, tips, np.tile(UPRIGHT, (3, 1))).tolist() == [True, False, False]
+    # The same tip with its axis leaning towards what stands is in it.
+    away, towards = LEANING, LEANING * [-1.0, 1.0, 1.0]
+    tip = np.array([[16.0, 10.0, 2.0]] * 2)
+    assert stock.is_free(shank, tip, np.array([away, towards])).tolist() == [True, False]
+
+
+def test_near_the_part_stock_is_not_counted_nor_is_the_part_itself():
+    stock = RemainingStock.of(BLANK, WORLD, [(PlanningStock.of(BLANK, SETUP), WORLD)])
+    floor = grid(lambda x, y: 4.0 + 0.0 * x, n=30)
+    left = stock.beyond(2.0, floor.points, floor.normals)
+    assert left.points[:, 2].min() > 6.0 and left.points[:, 2].max() > 9.0
+
+
+def clearance(remaining_stock, skin=None):
+    """Return the queries of a ball on a drive where nothing of the part is ever met."""
+    drive, *_ = driven(skin or grid(lambda x, y: 0.0 * x, n=30))
+    drive = replace(
+        drive,
+        remaining_stock=remaining_stock,
+        query_for=lambda tool: lambda tip, axis, **_: np.ones(len(tip), bool),
+    )
+    return StockClearance.of(drive, BALL, 2.0)
+
+
+def test_a_leaning_tool_keeps_its_shank_out_of_stock_that_stands():
+    around = clearance(RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
+    query = around.with_stock(lambda tip, axis, **_: np.ones(len(tip), bool))
+    tip, axes = np.array([[16.0, 10.0, 0.0]] * 2), np.array([LEANING, LEANING * [-1.0, 1.0, 1.0]])
+    assert query(tip, axes).tolist() == [True, False]
+
+
+def test_poses_are_asked_for_from_the_safest_to_those_clear_of_the_part_alone():
+    whole = RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)])
+    widths, bare = [], lambda tip, axis, **_: np.ones(len(tip), bool)
+
+    def query_for(tool):
+        widths.append(tool.neck_diameter - BALL.neck_diameter)
+        return bare
+
+    found = clearance(whole).queries(query_for, bare)
+    # Twice the wanted thickness on either side, then a millimetre's, then nothing but what stands, then nothing.
+    assert widths == pytest.approx([4.0, 2.0]) and len(found) == 4 and found[-1] is bare
+    tip, into = np.array([[16.0, 10.0, 0.0]]), np.array([LEANING * [-1.0, 1.0, 1.0]])
+    assert [bool(q(tip, into)[0]) for q in found] == [False, False, False, True]
+    # What leaves an allowance goes nowhere with its shank in stock.
+    around = clearance(whole)
+    around = replace(around, drive=replace(around.drive, allowance=0.1))
+    assert [bool(q(tip, into)[0]) for q in around.queries(query_for, bare)] == [False] * 3
+    nothing = replace(whole, points=np.zeros((0, 3)))
+    assert len(clearance(nothing).queries(query_for, bare)) == 3
+
+
+def test_a_tool_goes_out_at_feed_until_it_has_left_the_stock():
+    around = clearance(RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
+    assert around.retreat(np.array([25.0, 10.0, 0.0]), LEANING) == 0.0
+    assert around.retreat(np.array([8.0, 10.0, 1.0]), np.array(UPRIGHT)) >= 8.0
+
+
+def test_a_grown_tool_is_nowhere_slimmer_than_below():
+    wide = grown(BALL, 2.0)
+    assert (wide.diameter, wide.corner_radius) == (10.0, 5.0)
+    radii = [wide.radius, *(r for _, r0, _, r1 in wide.profile() for r in (r0, r1))]
+    assert radii[0] == min(radii)
+
+
+def test_a_leaning_tool_is_fed_off_and_onto_its_passes_as_far_as_demanded():
+    drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=4))
+    passes = [straight((5, 5, 0), (25, 5, 0), LEANING), straight((5, 20, 0), (25, 20, 0), LEANING)]
+    path = linked(
+        passes, drive, BALL, DATA, stock, setup, replace(MANNER, retreat=lambda tip, axis: 4.0)
+    )
+    rapid = np.flatnonzero(path.motion == Motion.RAPID)
+    before = rapid[rapid > 0] - 1
+    off = np.linalg.norm(path.position[before] - path.position[before - 1], axis=1)
+    fed = (path.motion[before] == Motion.LINE) & (path.mark[before] == Mark.LEAD)
+    assert fed.sum() == 2 and off[fed] == pytest.approx(4.0)
+    onto = rapid[:-1][path.motion[rapid[:-1] + 1] == Motion.LINE] + 1
+    assert np.linalg.norm(path.position[onto] - path.position[onto - 1], axis=1) == pytest.approx(
+        4.0
+    )
+
+
+def test_a_straight_link_that_touches_something_is_lifted_over():
+    passes = [
+        straight((5, 5, 0), (25, 5, 0), LEANING),
+        straight((25, 5.5, 0), (5, 5.5, 0), LEANING),
+    ]
+    drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=4))
+    for clear in (True, False):
+        manner = replace(
+            MANNER, query=lambda tip, axis, *, clear=clear, **_: np.full(len(tip), clear)
+        )
+        path = linked(passes, drive, BALL, DATA, stock, setup, manner)
+        assert (Mark.LINK in path.mark) == clear
+
+
+def test_an_upright_tool_under_something_that_hangs_over_rises_at_feed():
+    drive, setup, stock = driven(roofed(), top=20.0)
+    # The ball is 1 mm beside the roof: with what is left on it, it doesn't come by at rapid.
+    path = linked(
+        [straight((14, 5, 0), (14, 25, 0)), straight((25, 5, 0), (25, 25, 0))],
+        drive, BALL, DATA, stock, setup, replace(MANNER, lead_radius=0.0),
+    )  # fmt: skip
+    cut = path.mark == Mark.CUT
+    first = np.flatnonzero(cut & (path.position[:, 0] < 20.0))[-1]
+    assert path.motion[first + 1] == Motion.LINE and path.position[first + 1, 2] >= 12.0
+    last = np.flatnonzero(cut)[-1]
+    assert path.motion[last + 1] == Motion.RAPID
+
+
+def test_under_stock_on_a_roof_an_upright_neck_leaves_the_floor_to_a_leaning_tool():
+    # Flutes of 8 mm under a roof 12 mm high at x = 10: the ball stands free from 13 on, its neck keeps off what is left on the roof's rim.
+    radius = 0.5 * BALL.neck_diameter
+    for left, past in ((0.0, 13.0), (2.0, 10.0 + radius + HOLDER_CLEARANCE + 2.0)):
+        found, tags = without_met(roofed(), (1,), BALL, -50.0, 0.02, left)
+        middle = found.points[found.triangles[found.of(tags)]].mean(axis=1)
+        beside = (middle[:, 0] > 13.0) & (middle[:, 0] < 14.5)
+        assert beside.any() == (left == 0.0)
+        gone, given = remaining_upright(roofed(), (1,), BALL, -50.0, 0.02, left)
+        handed = gone.points[gone.triangles[gone.of(given)]]
+        assert past < handed[:, :, 0].max() < past + 6.0
+        # Between what an upright tool cuts and what is handed on nothing stays.
+        assert handed[:, :, 0].max() > middle[middle[:, 0] > 13.0, 0].min()
