@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+
+import cadquery as cq
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -16,6 +19,7 @@ from samples import (
     turned,
     two_pockets_and_a_rib_shape,
 )
+from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.part.shape import surfaces as strips
@@ -30,6 +34,8 @@ from trunnion.part.shape.surfaces import (
 )
 from trunnion.verify.contact import PartContact
 from trunnion.verify.finish.coverage import samples_of
+from trunnion.verify.motion import moves_of
+from verify_tools import flat, program_section
 
 SHAPES = {
     "pocket": block_with_pocket_shape,
@@ -143,3 +149,23 @@ def test_a_dip_in_a_walls_rim_stays_open_though_its_sides_differ_by_a_rounding(o
 def test_a_walls_strips_cover_what_lies_under_its_rim(heights: list[float]) -> None:
     rows = wall_under([(2.0 * k, u) for k, u in enumerate(heights)])
     assert area_of(rows) == approx(float(np.trapezoid(heights, dx=2.0)), abs=1e-4)
+
+
+@pytest.mark.parametrize("radius", [60.0, 260.0])
+def test_a_dome_that_is_cut_off_upright_ends_where_it_is_cut_off(radius):
+    # The cut is no line or circle in the sphere's parameters, of which one is an angle about its axis: it is followed by chords.
+    x = 0.75 * min(radius, 84.0)
+    dome = (
+        cq.Workplane("XY")
+        .box(2.0 * x, 0.5 * x, 2.0 * radius)
+        .intersect(cq.Workplane("XY").sphere(radius))
+    )
+    side = radius - math.hypot(x, 0.25 * x) / 4.0
+    contact = PartContact(surfaces_of(read(dome.val().wrapped), WORLD))
+    tool = flat(14.0)(flute=40.0)
+    beside = [(x + 7.0, y, 0.5 * side) for y in (-x, x)]
+    depth = contact.along(moves_of([program_section(tool, beside)])).depth[-1]
+    assert depth[0] <= tolerance.CONTACT_BOUND
+    into = [(at - 0.01, y, z) for at, y, z in beside]
+    deeper = contact.along(moves_of([program_section(tool, into)])).depth[-1]
+    assert deeper[0] == approx(0.01, abs=tolerance.CONTACT_BOUND)

@@ -17,8 +17,9 @@ listed, in `Surfaces.free`: `part/shape/facets.py` has it.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -83,6 +84,8 @@ STRIP_COLUMNS = 37
 # Columns of an outline's edge: both ends, then of an arc its centre and radius, positive when it goes anticlockwise; 0 for a line.
 EX0, EY0, EX1, EY1, ECX, ECY, ERADIUS = range(7)
 EDGE_COLUMNS = 7
+FEWEST_CHORDS, MOST_CHORDS = 8, 4096
+"""Chords that follow an edge whose curve in the surface's parameters is neither a line nor a circle."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -185,6 +188,11 @@ class Profile:
         if self.radius:
             return self.w + self.radius * math.cos(u), self.z + self.radius * math.sin(u)
         return self.w + u * self.dw, self.z + u * self.dz
+
+    def sizes(self, u: Floats, turned: bool) -> tuple[Floats, float]:
+        """Return how many mm a unit of s (k,) and one of u are at parameters u (k,); `turned` where s is an angle about an axis."""
+        along = self.w + (self.radius * np.cos(u) if self.radius else u * self.dw)
+        return np.abs(along) if turned else np.ones(len(u)), self.radius or 1.0
 
     def levels(self, low: float, high: float) -> list[float]:
         """Return the parameters between which the profile is monotone in w and z."""
@@ -600,7 +608,11 @@ def _round(
             profile, outward = Profile(major, origin[2], radius=minor), 1.0
         v_scale = up if profile.radius else 1.0
         edges = _edges(
-            face, np.array([[turn, 0.0], [0.0, v_scale]]), np.array([phase, 0.0]), progress
+            face,
+            np.array([[turn, 0.0], [0.0, v_scale]]),
+            np.array([phase, 0.0]),
+            progress,
+            partial(profile.sizes, turned=True),
         )
         # A right-handed placement's natural normal points away from the axis; a left-handed one's points towards it.
         handed = math.copysign(1.0, np.cross(x, y) @ axis)
@@ -615,7 +627,13 @@ def _round(
             Profile(0.0, origin[2], radius=shape.Radius()),
             Guide(0, origin[0], origin[1], along[0], along[1]),
         )
-        edges = _edges(face, np.array([[0.0, turn], [1.0, 0.0]]), np.array([0.0, phase]), progress)
+        edges = _edges(
+            face,
+            np.array([[0.0, turn], [1.0, 0.0]]),
+            np.array([0.0, phase]),
+            progress,
+            partial(profile.sizes, turned=False),
+        )
         side = sign * math.copysign(1.0, np.cross(x, y) @ axis)
     else:
         return None
@@ -627,7 +645,17 @@ def _round(
     )
 
 
-def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list[TrimEdge]:
+Sizes = Callable[[Floats], tuple[Floats, float]]
+"""From u (k,) to how many mm a unit of s (k,) and one of u are there."""
+
+
+def _in_mm(u: Floats) -> tuple[Floats, float]:
+    return np.ones(len(u)), 1.0
+
+
+def _edges(
+    face: Any, matrix: Floats, shift: Floats, progress: Progress, sizes: Sizes = _in_mm
+) -> list[TrimEdge]:
     """Return the face's edges in (s, u): rows of the matrix are where the surface's two parameters go, `shift` where its origin goes."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Curve2d
@@ -668,7 +696,7 @@ def _edges(face: Any, matrix: Floats, shift: Floats, progress: Progress) -> list
                 centre[0], centre[1], position.Radius(), angles[0], angles[0] + sweep
             )
         else:
-            found += _sampled(curve, first, last, matrix, shift)
+            found += _sampled(curve, first, last, matrix, shift, sizes)
     return found
 
 
@@ -678,13 +706,21 @@ def _mapped(curve: Any, parameters: Floats, matrix: Floats, shift: Floats) -> Fl
 
 
 def _sampled(
-    curve: Any, first: float, last: float, matrix: Floats, shift: Floats
+    curve: Any, first: float, last: float, matrix: Floats, shift: Floats, sizes: Sizes
 ) -> list[TrimEdge]:
-    """Return chords of a general trim, monotone in u, close enough for the contact bound in mm or radians times mm."""
-    count = 8
+    """Return chords of a general trim, close enough in mm for the contact bound."""
+    at = np.linspace(first, last, FEWEST_CHORDS + 1)
+    path = _mapped(curve, at, matrix, shift)
     while True:
-        path = _mapped(curve, np.linspace(first, last, 2 * count + 1), matrix, shift)
-        error = np.abs(path[1::2] - 0.5 * (path[:-1:2] + path[2::2])).max()
-        if error < tolerance.CONTACT_BOUND / 4 or count >= 4096:
-            return line_edges(path[::2])
-        count *= 2
+        middle = 0.5 * (at[:-1] + at[1:])
+        between = _mapped(curve, middle, matrix, shift)
+        along, across = sizes(between[:, 1])
+        away = np.abs(between - 0.5 * (path[:-1] + path[1:])) * np.column_stack(
+            [along, np.full(len(middle), across)]
+        )
+        far = away.max(axis=1) > tolerance.CONTACT_BOUND / 4
+        if not far.any() or len(at) > MOST_CHORDS:
+            return line_edges(path)
+        rows = np.flatnonzero(far) + 1
+        at = np.insert(at, rows, middle[far])
+        path = np.insert(path, rows, between[far], axis=0)
