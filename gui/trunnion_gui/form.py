@@ -174,16 +174,16 @@ def _file(setting: Declared) -> QLineEdit:
     line.setClearButtonEnabled(True)
     patterns = " ".join(f"*{ending}" for ending in setting.files)
 
-    def choose() -> None:
+    def choose_path() -> None:
         title, kinds = tr(setting.label), f"{tr(setting.label)} ({patterns})"
-        chosen, _ = QFileDialog.getOpenFileName(line.window(), title, line.text(), kinds)
-        if chosen:
-            line.setText(chosen)
+        path, _ = QFileDialog.getOpenFileName(line.window(), title, line.text(), kinds)
+        if path:
+            line.setText(path)
             line.editingFinished.emit()
 
     action = line.addAction(icons.icon("open"), QLineEdit.ActionPosition.TrailingPosition)
     action.setToolTip(tr("Choose a file"))
-    action.triggered.connect(choose)
+    action.triggered.connect(choose_path)
     return line
 
 

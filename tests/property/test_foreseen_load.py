@@ -64,7 +64,7 @@ def test_what_is_foreseen_at_full_width_is_near_what_is_measured():
     assert float(np.mean(found)) <= NOT_MUCH_MORE
 
 
-CLOSE = (0.87, 1.15)
+CLOSE = (1.0 / 1.15, 1.15)
 """What a strategy's laid paths come to, over what is measured of them, on the median."""
 AT_AN_ENTRY = 1.25
 """The same at most for power of strategies in `ENTERED`: they meet their peak where a helix runs out into a flat turn, and the proof takes

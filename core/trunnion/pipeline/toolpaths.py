@@ -185,6 +185,8 @@ def _loaded(
     path = turned(laid.path, scene.setup.frame, scene.loads.frame)
     load = scene.loads.cut(path, operation.cutter, operation.data, material, progress)
     power, rate, chip = (float(v.max(initial=0.0)) for v in (load.power, load.rate, load.chip))
+    if (power, rate, chip) == (laid.power, laid.rate, laid.chip):
+        return laid
     return replace(laid, power=power, rate=rate, chip=chip)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from trunnion.findings import Finding, error, face_tags, info, warning
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.model.operation import CuttingData
+from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import PlaneDrive, WallGuide
@@ -77,7 +78,14 @@ class ProfileFinishSettings:
     safety: float = safety()
 
 
-@strategy(settings=ProfileRoughSettings, drive=PlaneDrive, meets=inner_corner)
+def _ring_width(
+    tool: Tool, data: CuttingData, settings: Any, before: Operation | None
+) -> Engagement:
+    """Return the width of cut where a ring turns into a corner, wider on both sides of it by what the ring before has left there."""
+    return inner_corner(tool, replace(data, width=data.width + 2.0 * LITTLE), settings, before)
+
+
+@strategy(settings=ProfileRoughSettings, drive=PlaneDrive, meets=_ring_width)
 def profile_rough(
     drive: PlaneDrive,
     tool: Tool,
