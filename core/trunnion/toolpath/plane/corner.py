@@ -154,8 +154,9 @@ def _over_stock(
     what roughing has left, and the stock at the rim, which a wall keeps high, does not count.
     """
     finishes = drive.wall_allowance <= 0.0
+    grazes = GRAZE if _leaves_slivers(drive, builder.tool) else 0.0
     trimming = (
-        PassTrimming.of(builder, rest, height.z + WORTH, RIM if finishes else GRAZE)
+        PassTrimming.of(builder, rest, height.z + WORTH, RIM if finishes else grazes)
         if passes
         else None
     )
@@ -180,11 +181,18 @@ def _rests(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Region:
     cut = level.boundary.offset(-drive.earlier_radius - drive.earlier_allowance)
     slack = max(drive.earlier_allowance - drive.wall_allowance, 0.0) + tolerance.SEW
     rest = wanted.minus(cut.offset(drive.earlier_radius + slack)) if cut else wanted
-    if drive.wall_allowance > 0.0:
-        rest = rest.offset(-0.5 * TIP).offset(0.5 * TIP)
+    if not _leaves_slivers(drive, tool):
+        return Region(tuple(p for p in rest.pieces if p.area > SMALLEST_REST))
+    rest = rest.offset(-0.5 * TIP).offset(0.5 * TIP)
     # No wider than the allowance on the mean of a diameter's way, as loads are measured: finishing takes that with the allowance.
     least = max(SMALLEST_REST, drive.wall_allowance * tool.diameter)
     return Region(tuple(p for p in rest.pieces if p.area > least))
+
+
+def _leaves_slivers(drive: PlaneDrive, tool: Tool) -> bool:
+    """Return whether roughing may leave to finishing what is hardly more than its allowance: not where the tool goes deeper than its flutes
+    are long, for its neck would meet in a lower layer what an upper one left."""
+    return drive.wall_allowance > 0.0 and drive.top - drive.bottom <= tool.flute_length
 
 
 def _layer(drive: PlaneDrive, rest: Region, tool: Tool, data: CuttingData) -> tuple[float, bool]:
