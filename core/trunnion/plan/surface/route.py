@@ -222,12 +222,13 @@ def _add_slivers(state: SurfacePlanState) -> None:
 def _hidden(
     state: SurfacePlanState, samples: AreaSamples, tags: set[int], progress: Progress
 ) -> tuple[int, ...]:
-    """Return the faces that no upright cutter finishes most of."""
+    """Return the faces that no upright cutter finishes most of; a face without a sample is a sliver and none of them."""
     seen = np.zeros(len(samples), dtype=bool)
     slender = sorted(_finishers(state), key=lambda t: (t.diameter, -depth_reached(t)))[:SLENDER]
     for tool in slender:
         seen |= reached(state.space, samples, tool, state.route.reach_clearance, 0.0, progress)
-    return tuple(sorted(t for t in tags if seen[samples.face == t].mean() < MOST))
+    sampled = tags & set(np.unique(samples.face).tolist())
+    return tuple(sorted(t for t in sampled if seen[samples.face == t].mean() < MOST))
 
 
 def _leaning_finishers(state: SurfacePlanState) -> tuple[Tool, ...]:
