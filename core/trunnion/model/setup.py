@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from trunnion.geometry.frame import Frame
@@ -29,4 +28,4 @@ class Setup:
     def top(self, blank: Blank) -> float:
         """Return how high blank and fixtures stand, in the setup's frame."""
         own = (self.frame.to_local(f.mesh.points)[:, 2].max() for f in self.fixtures)
-        return max(float(blank.box_in(self.frame)[1][2]), *map(float, own), -math.inf)
+        return float(max([blank.box_in(self.frame)[1][2], *own]))

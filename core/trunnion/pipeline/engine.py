@@ -186,7 +186,7 @@ class Engine:
 
         found = []
         for n, word in enumerate(words):
-            setup, file = fixture_word(word)
+            setup, file = setup_file(word)
             mesh = read_fixture(file, progress=progress.part(n / len(words), (n + 1) / len(words)))
             found.append(Fixture(name=file.stem, mesh=mesh, setup=setup))
         return replace(session, fixtures=tuple(found))
@@ -311,10 +311,10 @@ class Engine:
         return (*files, project)
 
 
-def fixture_word(word: str) -> tuple[str, Path]:
+def setup_file(word: str) -> tuple[str, Path]:
     """Return the setup (empty: all) and the file that a word names: `FILE`, or `S2=FILE`.
 
-    >>> fixture_word("S2=clamp.stl")
+    >>> setup_file("S2=clamp.stl")
     ('S2', PosixPath('clamp.stl'))
     """
     setup, equals, file = word.partition("=")

@@ -16,7 +16,7 @@ from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Box
 from trunnion.model.setup import Setup
-from trunnion.plan.freeform.fixtures import OffsetFixture, area_of, off_fixtures, with_fixtures
+from trunnion.plan.freeform.fixtures import OffsetFixture, off_fixtures, with_fixtures
 from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.prismatic import fixtures
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
@@ -151,9 +151,11 @@ def test_of_a_plane_beside_a_clamp_what_the_cutter_cannot_reach_is_left_out():
     block = clamp((low[0] - 10, -90, low[2] - 9), (low[0], 90, high[2] + 20))
     thick = (OffsetFixture.of(block, SETUP, blank),)
     kept, tags, refused = off_fixtures(skin, (1,), D10, thick, -50.0, 0.01)
-    whole = area_of(skin, (1,))
+    whole = skin.areas(skin.of((1,))).sum()
     # A flat cutter's axis stays 6 mm off, where it touches the plane at its rim: what lies nearer than that is left out.
-    assert refused.by == ("clamp",) and refused.area == approx(whole - area_of(kept, tags))
+    assert refused.by == ("clamp",) and refused.area == approx(
+        whole - kept.areas(kept.of(tags)).sum()
+    )
     assert 0.0 < refused.area < 0.5 * whole
     standing = with_fixtures(kept, thick)
     assert standing.drop.drop(np.array([[low[0] - 5.0, 0.0]]), np.zeros((1, 6)), -50.0) == approx(

@@ -43,7 +43,7 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the verdict."""
-    from trunnion.pipeline.engine import fixture_word
+    from trunnion.pipeline.engine import setup_file
     from trunnion.pipeline.proof import fine_faces
 
     faces = fine_faces.faces_named(options.fine) if options.fine else ()
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
         from trunnion.pipeline.proof.external_nc import text_of
 
         for word in options.nc:
-            text_of(fixture_word(word)[1])
+            text_of(setup_file(word)[1])
     engine, session = open_session(options, "toolpath" if options.nc else "verify")
     if options.nc:
         from trunnion.pipeline.proof.external_nc import verify_texts
@@ -67,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         verdict = proof_dict(
             session,
-            tuple(str(fixture_word(w)[1]) for w in options.nc),
+            tuple(str(setup_file(w)[1]) for w in options.nc),
             {n: r.seconds for n, r in session.records.items()},
         )
         show_json(verdict | ({"fine": fine_faces.fine_dict(figures)} if figures else {}))

@@ -46,6 +46,11 @@ class Skin:
         """Return which triangles (t,) lie on faces of some tags."""
         return np.isin(self.face, tags)
 
+    def areas(self, rows: Bools | slice = slice(None)) -> Floats:
+        """Return the areas (k,) of some triangles in mm2, of all without rows."""
+        a, b, c = np.moveaxis(self.points[self.triangles[rows]], 1, 0)
+        return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
+
     def moved(self, frame: Frame, other: Frame) -> Skin:
         """Return the same skin, given in one frame, in another one."""
         if frame is other:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from trunnion import tolerance
 from trunnion.model.tool.drill import point_height, wrong_drill
 from trunnion.model.tool.holder import Holder
 from trunnion.model.tool.mill import MILLS
@@ -127,6 +128,16 @@ class Tool:
             (self.stickout + z0, r0, self.stickout + z1, r1) for z0, r0, z1, r1 in self.holder.rows
         ]
         return tuple(rows)
+
+    def rings(self) -> list[tuple[float, float]]:
+        """Return from which height above the tip the tool is how wide: (mm, radius in mm) of the cutter and of all above the flutes that is
+        wider."""
+        wider = [
+            (z0, max(r0, r1))
+            for z0, r0, _, r1 in self.profile()
+            if max(r0, r1) > self.radius + tolerance.COINCIDENT
+        ]
+        return [(0.0, self.radius), *wider]
 
     def radius_at(self, height: float) -> float:
         """Return the radius of the cutting part at a height above the tip."""

@@ -189,7 +189,7 @@ class Profile:
             return self.w + self.radius * math.cos(u), self.z + self.radius * math.sin(u)
         return self.w + u * self.dw, self.z + u * self.dz
 
-    def sizes(self, u: Floats, turned: bool) -> tuple[Floats, float]:
+    def unit_lengths(self, u: Floats, turned: bool) -> tuple[Floats, float]:
         """Return how many mm a unit of s (k,) and one of u are at parameters u (k,); `turned` where s is an angle about an axis."""
         along = self.w + (self.radius * np.cos(u) if self.radius else u * self.dw)
         return np.abs(along) if turned else np.ones(len(u)), self.radius or 1.0
@@ -612,7 +612,7 @@ def _round(
             np.array([[turn, 0.0], [0.0, v_scale]]),
             np.array([phase, 0.0]),
             progress,
-            partial(profile.sizes, turned=True),
+            partial(profile.unit_lengths, turned=True),
         )
         # A right-handed placement's natural normal points away from the axis; a left-handed one's points towards it.
         handed = math.copysign(1.0, np.cross(x, y) @ axis)
@@ -632,7 +632,7 @@ def _round(
             np.array([[0.0, turn], [1.0, 0.0]]),
             np.array([0.0, phase]),
             progress,
-            partial(profile.sizes, turned=False),
+            partial(profile.unit_lengths, turned=False),
         )
         side = sign * math.copysign(1.0, np.cross(x, y) @ axis)
     else:
@@ -645,7 +645,7 @@ def _round(
     )
 
 
-Sizes = Callable[[Floats], tuple[Floats, float]]
+UnitLengths = Callable[[Floats], tuple[Floats, float]]
 """From u (k,) to how many mm a unit of s (k,) and one of u are there."""
 
 
@@ -654,7 +654,7 @@ def _in_mm(u: Floats) -> tuple[Floats, float]:
 
 
 def _edges(
-    face: Any, matrix: Floats, shift: Floats, progress: Progress, sizes: Sizes = _in_mm
+    face: Any, matrix: Floats, shift: Floats, progress: Progress, unit_lengths: UnitLengths = _in_mm
 ) -> list[TrimEdge]:
     """Return the face's edges in (s, u): rows of the matrix are where the surface's two parameters go, `shift` where its origin goes."""
     from OCP.BRep import BRep_Tool
@@ -696,7 +696,7 @@ def _edges(
                 centre[0], centre[1], position.Radius(), angles[0], angles[0] + sweep
             )
         else:
-            found += _sampled(curve, first, last, matrix, shift, sizes)
+            found += _sampled(curve, first, last, matrix, shift, unit_lengths)
     return found
 
 
@@ -706,7 +706,7 @@ def _mapped(curve: Any, parameters: Floats, matrix: Floats, shift: Floats) -> Fl
 
 
 def _sampled(
-    curve: Any, first: float, last: float, matrix: Floats, shift: Floats, sizes: Sizes
+    curve: Any, first: float, last: float, matrix: Floats, shift: Floats, unit_lengths: UnitLengths
 ) -> list[TrimEdge]:
     """Return chords of a general trim, close enough in mm for the contact bound."""
     at = np.linspace(first, last, FEWEST_CHORDS + 1)
@@ -714,7 +714,7 @@ def _sampled(
     while True:
         middle = 0.5 * (at[:-1] + at[1:])
         between = _mapped(curve, middle, matrix, shift)
-        along, across = sizes(between[:, 1])
+        along, across = unit_lengths(between[:, 1])
         away = np.abs(between - 0.5 * (path[:-1] + path[1:])) * np.column_stack(
             [along, np.full(len(middle), across)]
         )

@@ -10,7 +10,7 @@ from trunnion.findings import BadCall, BadInput, Finding, info
 from trunnion.model.material import Machine
 from trunnion.model.motion.program import Program
 from trunnion.model.session import PostedFile, Session, StepRecord
-from trunnion.pipeline.engine import Engine, fixture_word
+from trunnion.pipeline.engine import Engine, setup_file
 from trunnion.pipeline.proof.posted_programs import (
     dialect_of,
     errors_of_part,
@@ -66,7 +66,7 @@ def _by_setup(words: Sequence[str | Path], setups: Sequence[str]) -> dict[str, P
     """Return the file of each setup that words name; raise `BadCall` for a setup that is not there, or named twice."""
     found: dict[str, Path] = {}
     for n, word in enumerate(words):
-        named, file = fixture_word(str(word))
+        named, file = setup_file(str(word))
         if not named and n >= len(setups):
             raise BadCall(f"{len(words)} programs given, but the part has {len(setups)} setups")
         setup = named or setups[n]

@@ -32,7 +32,7 @@ class Proposal:
     finding: str
 
     def is_of(self, session: Session) -> bool:
-        """Return whether a session still has an error of the same kind in the same operation."""
+        """Return whether a session still has a finding of the same kind in the same operation."""
         return any(
             f.fix is not None and (f.code, f.fix.operation) == (self.fix.reason, self.fix.operation)
             for f in session.findings()

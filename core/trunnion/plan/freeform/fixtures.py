@@ -22,7 +22,6 @@ from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.partition import parted_near
 from trunnion.plan.freeform.finishing.rest import AROUND, MET, MOST
-from trunnion.plan.prismatic.fixtures import tool_rings
 from trunnion.progress import NO_PROGRESS, Progress
 
 NO_FACE = 0
@@ -51,7 +50,7 @@ class OffsetFixture:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class RefusedArea:
+class KeepOutArea:
     """What fixtures keep a cutter from: an area in mm2 of faces, the fixtures' names, and a place there (3,) in the cutting frame."""
 
     area: float
@@ -87,7 +86,7 @@ def off_fixtures(
     lowest: float,
     height: float,
     progress: Progress = NO_PROGRESS,
-) -> tuple[Skin, tuple[int, ...], RefusedArea | None]:
+) -> tuple[Skin, tuple[int, ...], KeepOutArea | None]:
     """Return the skin and the tags of what of faces an upright tool finishes with all of it beside or over fixtures, and what is left
     out, None where nothing is; `height` is the scallop height in mm that is wanted."""
     surface = _surface(fixtures)
@@ -98,14 +97,14 @@ def off_fixtures(
         at = position[up] + 2.0 * skin.bound * normal[up]
         tip = tip_at(tool, at, normal[up], np.tile([0.0, 0.0, 1.0], (len(at), 1)))
         deepest = surface.drop(tip[:, :2], lower_side(tool), lowest, progress) - tip[:, 2]
-        for above, radius in tool_rings(tool)[1:]:
+        for above, radius in tool.rings()[1:]:
             top = surface.drop(tip[:, :2], level_disc(radius), lowest, progress)
             deepest = np.maximum(deepest, top - above - tip[:, 2])
         met[up] = deepest
         return met
 
     around = 2.0 * max(AROUND, stepover_on_plane(max(tool.corner_radius, height), height))
-    whole = area_of(skin, tags)
+    whole = float(skin.areas(skin.of(tags)).sum())
     longest = max(MET, math.sqrt(whole / MOST))
     met_skin, met = parted_near(skin, tags, over, around, longest, progress)
     if not met:
@@ -113,15 +112,15 @@ def off_fixtures(
     left = tuple(t for t in tags if met_skin.of((t,)).any())
     points = met_skin.points[met_skin.triangles[met_skin.of(met)]].reshape(-1, 3)
     low, high = points.min(axis=0), points.max(axis=0)
-    wide = max(radius for _, radius in tool_rings(tool))
+    wide = max(radius for _, radius in tool.rings())
     by = tuple(
         f.name
         for f in fixtures
         if (f.corners[..., :2] <= high[:2] + wide).all(axis=2).any()
         and (f.corners[..., :2] >= low[:2] - wide).all(axis=2).any()
     )
-    area = whole - area_of(met_skin, left)
-    return met_skin, left, RefusedArea(area=area, by=by, at=0.5 * (low + high))
+    area = whole - float(met_skin.areas(met_skin.of(left)).sum())
+    return met_skin, left, KeepOutArea(area=area, by=by, at=0.5 * (low + high))
 
 
 def with_fixtures(skin: Skin, fixtures: Sequence[OffsetFixture]) -> Skin:
@@ -142,13 +141,6 @@ def with_fixtures(skin: Skin, fixtures: Sequence[OffsetFixture]) -> Skin:
         ),
         face=np.concatenate([skin.face, np.full(len(corners), NO_FACE)]),
     )
-
-
-def area_of(skin: Skin, tags: tuple[int, ...]) -> float:
-    """Return the area of faces in mm2."""
-    corners = skin.points[skin.triangles[skin.of(tags)]]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return float(0.5 * np.linalg.norm(across, axis=1).sum())
 
 
 def _surface(fixtures: Sequence[OffsetFixture]) -> DropSurface:

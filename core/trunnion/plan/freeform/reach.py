@@ -45,9 +45,7 @@ def samples_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaS
     """Return samples spread evenly over faces: a sample stands for an equal share of their area, the same ones each time."""
     rows = np.flatnonzero(skin.of(tags))
     corners = skin.points[skin.triangles[rows]]
-    area = 0.5 * np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
+    area = skin.areas(skin.of(tags))
     total = float(area.sum())
     if total <= 0.0:
         return AreaSamples(

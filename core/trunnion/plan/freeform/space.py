@@ -20,7 +20,7 @@ from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.finishing.rest import remaining_of, remaining_upright, without_met
-from trunnion.plan.freeform.fixtures import OffsetFixture, RefusedArea, off_fixtures, with_fixtures
+from trunnion.plan.freeform.fixtures import KeepOutArea, OffsetFixture, off_fixtures, with_fixtures
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
 from trunnion.plan.prismatic.fixtures import kept_off
@@ -176,7 +176,7 @@ class SurfaceSpace:
             findings=() if refused is None else (self._finding(operation, refused),),
         )
 
-    def _finding(self, operation: Operation, refused: RefusedArea) -> Finding:
+    def _finding(self, operation: Operation, refused: KeepOutArea) -> Finding:
         at = self.frame.to_world(refused.at)
         where = (operation.feature, *face_tags(operation.faces))
         return kept_off(

@@ -34,7 +34,7 @@ KEPT_OFF = "fixture.kept-off"
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class RefusedLevel:
+class KeepOutLevel:
     """What is cut off a level: mm2 in plan and of walls, a place there (3,) in the setup's frame, and the region that is kept out of."""
 
     plan: float
@@ -67,7 +67,7 @@ class PlanFixture:
         """Return what the envelope of an upright cutter must stay out of, its tip at a height or higher, for all of the tool to keep
         its room from the fixture."""
         found = []
-        for above, radius in tool_rings(tool):
+        for above, radius in tool.rings():
             height = max(z + above - tolerance.FIXTURE_CLEARANCE, self.foot)
             if self.top > height + tolerance.COINCIDENT:
                 more = radius - tool.radius + tolerance.FIXTURE_CLEARANCE
@@ -78,22 +78,12 @@ class PlanFixture:
         """Return the heights of the tip over which less of the tool is beside the fixture than below."""
         if self.top <= self.foot:
             return []
-        return [self.top + tolerance.FIXTURE_CLEARANCE - above for above, _ in tool_rings(tool)]
+        return [self.top + tolerance.FIXTURE_CLEARANCE - above for above, _ in tool.rings()]
 
     def _over(self, z: float) -> Region:
         if z not in self._areas:
             self._areas[z] = plan_area_above(self.corners, z)
         return self._areas[z]
-
-
-def tool_rings(tool: Tool) -> list[tuple[float, float]]:
-    """Return from which height above the tip a tool is how wide: (mm, radius in mm) of the cutter and of all that is wider."""
-    wider = [
-        (z0, max(r0, r1))
-        for z0, r0, _, r1 in tool.profile()
-        if max(r0, r1) > tool.radius + tolerance.COINCIDENT
-    ]
-    return [(0.0, tool.radius), *wider]
 
 
 def off_fixtures(
@@ -157,7 +147,7 @@ def _keep_out(fixtures: Sequence[PlanFixture], tool: Tool, z: float, near: Regio
 
 def _lost(
     level: DriveLevel, was: DriveLevel, drive: PlaneDrive, tool: Tool, out: Region
-) -> RefusedLevel | None:
+) -> KeepOutLevel | None:
     """Return what is cut off a level: of its plan area, and of the walls along which the axis would be too near to a fixture."""
     if not out:
         return None
@@ -176,7 +166,7 @@ def _lost(
         return None
     found = np.concatenate(points)
     middle = 0.5 * (found.min(axis=0) + found.max(axis=0))
-    return RefusedLevel(plan=plan.area, walls=walls, at=np.append(middle, level.bottom), out=out)
+    return KeepOutLevel(plan=plan.area, walls=walls, at=np.append(middle, level.bottom), out=out)
 
 
 def _spread(curve: Curve) -> tuple[Floats, Floats, float]:
@@ -196,7 +186,7 @@ def _spread(curve: Curve) -> tuple[Floats, Floats, float]:
 
 def _findings(
     drive: PlaneDrive,
-    lost: Sequence[RefusedLevel],
+    lost: Sequence[KeepOutLevel],
     fixtures: Sequence[PlanFixture],
     tool: Tool,
     setup: Setup,

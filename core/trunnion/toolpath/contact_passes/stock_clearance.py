@@ -133,8 +133,6 @@ def _whole_body(tool: Tool, wider: float) -> Sequence[tuple[float, float, float,
 
 
 def _samples(skin: Skin) -> AreaSamples:
-    corners = skin.points[skin.triangles]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = 0.5 * float(np.linalg.norm(across, axis=1).sum())
+    area = float(skin.areas().sum())
     tags = tuple(int(t) for t in np.unique(skin.face))
     return samples_on(skin, tags, int(min(max(area / EACH, 1.0), MOST)))

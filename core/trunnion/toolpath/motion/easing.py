@@ -75,7 +75,7 @@ def _eased(
     pieces, block = in_pieces(path, PIECE * tool.radius, cuts)
     length = pieces.lengths()
     # A piece's own front is partly opened by the one before: over a diameter's length that evens out.
-    section = evened(pieces, length, stock.working().lower(pieces, tool, progress), tool.diameter)
+    section = _evened(pieces, length, stock.working().lower(pieces, tool, progress), tool.diameter)
     share = np.clip(
         np.divide(most, section, out=np.ones(len(pieces)), where=section > most), LEAST, 1.0
     )
@@ -115,7 +115,7 @@ def in_pieces(path: Toolpath, piece: float, cuts: Bools) -> tuple[Toolpath, Ints
     ), rows
 
 
-def evened(pieces: Toolpath, length: Floats, gone: Floats, window: float) -> Floats:
+def _evened(pieces: Toolpath, length: Floats, gone: Floats, window: float) -> Floats:
     """Return the volume per way (n,) in mm2 that pieces take off, evened out over a window about each; rapids end a window."""
     run = np.concatenate(
         [[0.0], np.cumsum(np.where(pieces.motion == Motion.RAPID, window, length))]

@@ -13,7 +13,6 @@ from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc
-from trunnion.plan.prismatic.fixtures import tool_rings
 
 SPACING = 2.0
 """mm between the positions of a link that are looked at; the tool is taken wider by half of it, so that nothing falls in between."""
@@ -40,7 +39,7 @@ class FixtureSurface:
         wider = tolerance.FIXTURE_CLEARANCE + (0.5 * SPACING if len(way) > 1 else 0.0)
         tips = [
             self.surface.drop(way, level_disc(radius + wider), -math.inf).max() - above
-            for above, radius in tool_rings(tool)
+            for above, radius in tool.rings()
         ]
         return float(max(tips)) + tolerance.FIXTURE_CLEARANCE
 

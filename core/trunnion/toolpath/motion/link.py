@@ -39,11 +39,9 @@ def lowest_tip(builder: PathBuilder, start: ArrayLike, end: ArrayLike) -> float:
     nothing."""
     stock, tool = builder.stock(), builder.tool
     lowest = stock.height(start, end, tool.radius)
-    for z0, r0, _, r1 in tool.profile():
-        if max(r0, r1) > tool.radius:
-            lowest = max(
-                lowest, stock.height(start, end, max(r0, r1) + builder.safety) - z0 + builder.safety
-            )
+    for above, radius in tool.rings()[1:]:
+        top = stock.height(start, end, radius + builder.safety)
+        lowest = max(lowest, top - above + builder.safety)
     if builder.fixtures is not None:
         a, b = (np.asarray(v, dtype=np.float64)[:2] for v in (start, end))
         lowest = max(lowest, builder.fixtures.lowest_tip(tool, a, b))

@@ -21,6 +21,12 @@ from trunnion.units import SECONDS_PER_MINUTE
 MARGIN = 0.5
 """mm that a pass begins before and ends after the positions where it engages."""
 
+WORTH = 0.1
+"""mm: stock that stands no higher over a pass is not worth it."""
+
+GRAZE = 0.5
+"""Cells of the stock that a roughing pass may leave to the next one: what is known of an edge that goes through cells is no better."""
+
 LINK = 0.4
 """s that a lift, a short rapid and a descent take, most of it in the ramps of the axes: gaps that are fed through in less stay."""
 

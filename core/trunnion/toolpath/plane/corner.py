@@ -28,7 +28,7 @@ from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.contour import ContourApproach, cut_open, cut_parts
 from trunnion.toolpath.offsetting.levels import fillet_steps, steps_down
 from trunnion.toolpath.offsetting.rings import depth_first, ring_tree, safe_step
-from trunnion.toolpath.offsetting.trimming import PassTrimming
+from trunnion.toolpath.offsetting.trimming import GRAZE, WORTH, PassTrimming
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_REST = 0.02
@@ -40,14 +40,8 @@ SMALLEST_LEFTOVER = 0.05
 OVERRUN = 1.0
 """mm that a pass overlaps what is cut at each end of a rest, along the wall."""
 
-WORTH = 0.1
-"""mm: stock of a rest that stands no higher over a pass is not worth it."""
-
 TIP = 0.25
 """mm: where a rest is narrower, as its ends along the walls are, roughing leaves it to finishing."""
-
-GRAZE = 0.5
-"""Cells of the stock that a roughing pass may leave, what is known of its edge being no better."""
 
 DEEPEST = 1.5
 """Diameters: the deepest layer that a narrow rest is roughed in, as deep as a wall's finishing steps."""

@@ -36,20 +36,14 @@ from trunnion.toolpath.offsetting.contour import (
     length_out_of_reach,
 )
 from trunnion.toolpath.offsetting.levels import steps_down
-from trunnion.toolpath.offsetting.trimming import PassTrimming
+from trunnion.toolpath.offsetting.trimming import GRAZE, WORTH, PassTrimming
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
 
-WORTH = 0.1
-"""mm: stock of the blank's margin that stands no higher over a layer is not worth a pass in it."""
-
 LITTLE = 0.25
 """mm on the mean of a diameter's way: the next ring takes so much more, where that is all a ring would cut at a corner of the blank."""
-
-GRAZE = 0.5
-"""Cells of the stock that a pass may leave before the next one: the blank's edge goes through cells, a pass along it cuts nothing."""
 
 RIM_SPACING = 2.0
 """mm between the positions of the blank's rim whose distance from the profile is measured."""
@@ -114,8 +108,11 @@ def profile_rough(
             tool.radius + drive.wall_allowance + n * data.width for n in reversed(range(count))
         ]
         axis_regions: dict[tuple[int, float], tuple[AxisRegion, list[Curve]]] = {}
+        margins: dict[int, Region] = {}
         for z in steps_down(max(guide.top, drive.stock_top), guide.bottom, data.depth):
             boundary = level_at(drive, z).boundary
+            if id(boundary) not in margins:
+                margins[id(boundary)] = _outside(boundary, stock, drive.wall_allowance)
             for distance in distances:
                 progress.at(
                     (guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW),
@@ -137,7 +134,7 @@ def profile_rough(
                     z,
                     axis_region,
                     approach,
-                    _outside(boundary, stock, drive.wall_allowance),
+                    margins[id(boundary)],
                     0.0 if distance == distances[-1] else LITTLE * tool.diameter,
                 )
         findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)

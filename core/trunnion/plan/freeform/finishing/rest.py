@@ -141,7 +141,7 @@ def _met_over(
     What is no wider than the cutter goes where it has been, but under faces that hang over: there it meets a `thickness` (mm) left on them.
     """
     rows = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile()]
-    wider = [(z, r) for z, r in rows if r > tool.radius + tolerance.COINCIDENT]
+    wider = tool.rings()[1:]
     overhang = overhanging(skin) if thickness > 0.0 else None
     highest = float(skin.points[:, 2].max())
 
