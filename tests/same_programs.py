@@ -1,6 +1,7 @@
 """Shows that two states of the code program the same: posted text, tool list, features, process and verdict, byte for byte.
 
-    python tests/same_programs.py BEFORE AFTER [--parts ../shared/parts] [--seeds 10] [--renamed old=new ...] [--without PATTERN]
+    python tests/same_programs.py BEFORE AFTER [--parts ../shared/parts] [--seeds 10] [--only NAME ...] [--renamed old=new ...]
+        [--without PATTERN]
 
 BEFORE and AFTER are checkouts (`git worktree add`); both run in this environment, each with its own sources in front. Programmed are B1, B4
 (panels) and D1, D2 (curved parts, by their plan; D1 with named cutters too) where the parts are there, and random small parts of both
@@ -87,7 +88,7 @@ def programmed(
         env=environment,
         check=False,
     )
-    if done.returncode not in (0, 1):
+    if not done.stdout.strip():
         return {"refused": done.stderr.strip().splitlines()[-1] if done.stderr.strip() else b""}
     verdict = {k: v for k, v in json.loads(done.stdout).items() if k not in UNTIMED}
     texts = {
@@ -153,6 +154,7 @@ def main() -> int:
     made.add_argument(
         "--without", default="", metavar="PATTERN", help="what is left out of the comparison"
     )
+    made.add_argument("--only", nargs="+", metavar="NAME", help="parts, such as B1 or panel-03")
     made.add_argument("--jobs", type=int, default=2)
     chosen = made.parse_args()
     renamed = dict(word.split("=", 1) for word in chosen.renamed)
@@ -169,9 +171,12 @@ def main() -> int:
             return case, found, len(before)
 
         different = 0
-        for case, found, count in pool.map(
-            compared, list(cases(chosen.parts, chosen.seeds, Path(folder)))
-        ):
+        wanted = [
+            case
+            for case in cases(chosen.parts, chosen.seeds, Path(folder))
+            if not chosen.only or case.name in chosen.only
+        ]
+        for case, found, count in pool.map(compared, wanted):
             different += bool(found)
             print(
                 f"{case.name:12s} {count} files {'the same' if not found else 'DIFFERENT'}",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from blockparts import BlockPart, terrace
@@ -45,6 +45,7 @@ AS_DRAWN = recognized(STILL)
 
 @settings(deadline=None, max_examples=15)
 @given(frames())
+@example(Frame(np.zeros(3), np.array([1.0, 2e-64, 0.0]), np.array([0.0, 0.0, -1.0])))
 def test_a_moved_part_has_the_same_features(placed: Frame) -> None:
     still, moved = AS_DRAWN, recognized(BlockPart(STILL.breaks, STILL.full, placed))
     assert summary(moved) == summary(still)

@@ -13,7 +13,7 @@ from trunnion import progress as module
 from trunnion.findings import Cancelled
 from trunnion.geometry.kernels.compiling import TEXT, compiling
 from trunnion.progress import BEAT_S, NO_PROGRESS, Progress
-from trunnion.verify.threads import in_parallel
+from trunnion.threads import in_parallel
 
 
 class Watch:

@@ -19,9 +19,10 @@ from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, A, C
 from trunnion.geometry.kernels.cutter_contact.push_cutter_compiled import push_cutter_loop
 from trunnion.geometry.lattice import Lattice, lattice_of
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.threads import in_parallel
 
 CHUNK = 2000
-"""Points between two looks at cancel."""
+"""Points that a thread drops the cutter on before it takes the next ones."""
 LINES, FIRST_CAPACITY = 20, 256
 """Lines between two looks at cancel, and spans that each has room for at first."""
 FACETS_A_LEAF = 2
@@ -104,11 +105,11 @@ class DropSurface:
         out, facet, contact = np.empty(n), np.empty(n, np.int64), np.empty((n, 3))
         points, lifts = np.ascontiguousarray(points, dtype=np.float64), self._lifted(pieces)
         floor = np.full(n, lowest, dtype=np.float64)
-        for first in range(0, n, CHUNK):
-            progress.at(first / n, "Dropping the cutter")
+
+        def work(first: int, last: int) -> None:
             kernel.drop_cutter_loop(
                 first,
-                min(first + CHUNK, n),
+                last,
                 points,
                 self.facets,
                 self.start,
@@ -121,6 +122,8 @@ class DropSurface:
                 facet,
                 contact,
             )
+
+        in_parallel(work, n, CHUNK, progress, "Dropping the cutter")
         return out, np.where(facet >= 0, self.row[facet], -1), contact
 
     def push(

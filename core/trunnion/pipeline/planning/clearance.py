@@ -22,6 +22,7 @@ from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.threads import in_parallel
 from trunnion.toolpath.contact_passes.axis_search import thickened
 
 if TYPE_CHECKING:
@@ -77,8 +78,6 @@ class PartClearance:
         return clear
 
     def _queried(self, moves: Moves) -> Bools:
-        from trunnion.verify.threads import in_parallel
-
         clear, contact = np.zeros(len(moves), dtype=bool), self._contact
 
         def work(first: int, last: int) -> None:

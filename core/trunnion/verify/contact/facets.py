@@ -19,6 +19,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.threads import in_parallel
 from trunnion.verify.contact.obstacles import Obstacles
 from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.cutter import bodies_of_one
@@ -26,7 +27,6 @@ from trunnion.verify.kernels.contact import facets as kernel
 from trunnion.verify.kernels.contact import pose_search
 from trunnion.verify.kernels.contact.bvh import build_bvh
 from trunnion.verify.motion import Moves
-from trunnion.verify.threads import in_parallel
 
 CHUNK = 100
 """Moves between two looks at cancel, fewer when they are long."""

@@ -35,11 +35,11 @@ from trunnion.part.shape.surfaces import (
     Surfaces,
 )
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.threads import in_parallel
 from trunnion.verify.contact.grid import Grid, grid_of
 from trunnion.verify.contact.penetration import Penetration, deepen
 from trunnion.verify.kernels.contact import strips as kernel
 from trunnion.verify.motion import Moves
-from trunnion.verify.threads import in_parallel
 
 CHUNK = 500
 """Moves between two looks at cancel; a chunk stays far below 0.2 s."""

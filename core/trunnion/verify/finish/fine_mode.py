@@ -20,12 +20,12 @@ from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.part.shape.exact import ExactPoints
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.threads import in_parallel
 from trunnion.verify.finish.sweep import flutes_of, tree_of
 from trunnion.verify.kernels import residual as residual_kernel
 from trunnion.verify.kernels import residual_bounds as kernel
 from trunnion.verify.kernels.residual import Flutes, SpanTree
 from trunnion.verify.motion import Moves
-from trunnion.verify.threads import in_parallel
 
 FINE_BOUND = 2e-4
 """mm: how far the fine mode's figures may be from the truth."""

@@ -14,6 +14,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.tool import PLAIN_FORMS
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.threads import in_parallel
 from trunnion.verify.contact import Grid, grid_of
 from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels import body
@@ -21,7 +22,6 @@ from trunnion.verify.kernels import residual as kernel
 from trunnion.verify.kernels.contact import strips as columns
 from trunnion.verify.kernels.residual import Flutes, SpanTree
 from trunnion.verify.motion import Moves
-from trunnion.verify.threads import in_parallel
 
 CELL = 4.0
 """mm, pitch of the cells: a few samples each, and few enough cells a move."""

@@ -11,6 +11,7 @@ from trunnion import tolerance
 from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.progress import Progress
+from trunnion.threads import in_parallel
 from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels.stock import dexels as kernel
 from trunnion.verify.motion import Moves
@@ -19,7 +20,6 @@ from trunnion.verify.stock.engagement import Probes, Tally
 from trunnion.verify.stock.field import UP
 from trunnion.verify.stock.spans import Spans, spans_each, spans_of, whole_arcs
 from trunnion.verify.stock.stock import MOST_BYTES, Stock
-from trunnion.verify.threads import in_parallel
 
 SPANS = 20_000
 """Spans made ready together: 6 MB."""

@@ -86,7 +86,8 @@ def _lifted_over(
     def over(position: Floats, normal: Floats) -> Floats:
         lift = np.full(len(position), np.inf)
         up = normal[:, 2] > 0.0
-        tip, top = _drop(skin, position[up], normal[up], tool, lowest, progress)
+        tip = _tips(skin, position[up], normal[up], tool)
+        top = skin.drop.drop(tip[:, :2], lower_side(tool), lowest, progress)
         lift[up] = top - tip[:, 2] - limit
         return lift
 
@@ -119,16 +120,8 @@ def without_met(
         return skin, tags
     # The passes go on over a rim for the distance of two of them.
     around = 2.0 * max(AROUND, stepover_on_plane(max(tool.corner_radius, height), height))
-    corners = skin.points[skin.triangles[skin.of(tags)]]
-    area = (
-        0.5
-        * np.linalg.norm(
-            np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-        ).sum()
-    )
-    met_skin, met = parted_near(
-        skin, tags, over, around, max(MET, math.sqrt(area / MOST)), progress
-    )
+    longest = max(MET, math.sqrt(skin.areas(skin.of(tags)).sum() / MOST))
+    met_skin, met = parted_near(skin, tags, over, around, longest, progress)
     return (met_skin, tuple(t for t in tags if met_skin.of((t,)).any())) if met else (skin, tags)
 
 
@@ -136,28 +129,33 @@ def _met_over(
     skin: Skin, tool: Tool, lowest: float, thickness: float, progress: Progress
 ) -> Callable[..., Floats]:
     """Return how deep (p,) mm shank or holder of an upright tool are in the part at positions (p, 3) with normals (p, 3), all taken wider
-    and lower by `more`; -inf where an upright tool doesn't touch.
+    and lower by `more`; where they are not, at most nothing: -inf where an upright tool doesn't touch or nothing stands beside it.
 
     What is no wider than the cutter goes where it has been, but under faces that hang over: there it meets a `thickness` (mm) left on them.
     """
-    rows = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile()]
     wider = tool.rings()[1:]
+    whole = [(z0, max(r0, r1)) for z0, r0, _, r1 in tool.profile()]
     overhang = overhanging(skin) if thickness > 0.0 else None
     highest = float(skin.points[:, 2].max())
 
     def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
         met = np.full(len(position), -np.inf)
         up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        tip, top = _drop(skin, position[up], normal[up], tool, lowest, progress)
-        material_top = np.maximum(top, tip[:, 2])
-        deepest = np.full(len(tip), -np.inf)
-        for surface, around, bodies in ((skin.drop, 0.0, wider), (overhang, thickness, rows)):
+        tip = _tips(skin, position[up], normal[up], tool)
+        # How high the tip must be for all of the tool to be above what stands beside it.
+        free = np.full(len(tip), -np.inf)
+        for surface, around, bodies in ((skin.drop, 0.0, wider), (overhang, thickness, whole)):
             for z, radius in bodies if surface is not None else ():
-                low = np.flatnonzero(material_top + z - more < highest)
+                low = np.flatnonzero(tip[:, 2] + z - more < highest)
                 if surface is not None and len(low):
                     disc = level_disc(radius + around + HOLDER_CLEARANCE + more)
                     wall_top = surface.drop(tip[low, :2], disc, lowest, progress)
-                    deepest[low] = np.maximum(deepest[low], wall_top - material_top[low] - z + more)
+                    free[low] = np.maximum(free[low], wall_top - z + more)
+        deepest = free - tip[:, 2]
+        # The part may lift the tip above its position: that needs a look only where it would be too low.
+        doubtful = np.flatnonzero(deepest > 0.0)
+        top = skin.drop.drop(tip[doubtful, :2], lower_side(tool), lowest, progress)
+        deepest[doubtful] = np.minimum(deepest[doubtful], free[doubtful] - top)
         met[up] = deepest
         return met
 
@@ -173,11 +171,7 @@ def overhanging(skin: Skin) -> DropSurface | None:
     return DropSurface.of(skin.points, skin.triangles[hangs]) if hangs.any() else None
 
 
-def _drop(
-    skin: Skin, position: Floats, normal: Floats, tool: Tool, lowest: float, progress: Progress
-) -> tuple[Floats, Floats]:
-    """Return the tips (p, 3) of an upright cutter that touches at positions (p, 3) with normals (p, 3), and the heights (p,) that the part
-    lifts it to there."""
+def _tips(skin: Skin, position: Floats, normal: Floats, tool: Tool) -> Floats:
+    """Return the tips (p, 3) of an upright cutter that touches at positions (p, 3) with normals (p, 3)."""
     at = position + 2.0 * skin.bound * normal
-    tip = tip_at(tool, at, normal, np.tile([0.0, 0.0, 1.0], (len(at), 1)))
-    return tip, skin.drop.drop(tip[:, :2], lower_side(tool), lowest, progress)
+    return tip_at(tool, at, normal, np.tile([0.0, 0.0, 1.0], (len(at), 1)))

@@ -25,7 +25,7 @@ from trunnion.geometry.plane.region import Region
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Slicer
 from trunnion.recognize.panel.classes import FaceClass, FaceClasses
-from trunnion.tolerance import AREA, PLANE_REGION, SLIVER
+from trunnion.tolerance import AREA, PARAMETRIC, PLANE_REGION, SLIVER
 
 NARROW = 0.05
 """mm: open space narrower than this is the slope of an outer wall seen from above, or noise between two slices."""
@@ -171,7 +171,9 @@ def plan(region: Region) -> BaseGeometry:
 
 
 def _ring(curve: Curve) -> Floats:
-    return np.asarray(curve.sampled(10.0 * PLANE_REGION))
+    points = np.asarray(curve.sampled(10.0 * PLANE_REGION))
+    # What is left of a zero after a part was turned has squares that no number holds, and the polygon kernel divides by them.
+    return np.where(np.abs(points) < PARAMETRIC, 0.0, points)
 
 
 def _spaces(material: BaseGeometry, outline: BaseGeometry) -> Iterable[SliceSpace]:
