@@ -14,6 +14,7 @@ unexport PYTHONDONTWRITEBYTECODE
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install -q --disable-pip-version-check -r requirements.lock
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e .
+	$(BIN)/trunnion compile
 	touch .venv/made
 
 # Every time, because it takes no time and a machine may have lost a package, or an older checkout may have asked for fewer.

@@ -30,6 +30,7 @@ GENERAL = (
     "cut",
     "export",
     "settings",
+    "compile",
     "gui",
 )
 """Modules of the commands for parts of every family; families and packages add theirs by entry points (`registry.COMMANDS`)."""
