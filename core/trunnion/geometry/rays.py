@@ -81,6 +81,20 @@ def box_intervals(low: Floats, high: Floats, start: Floats, direction: Floats) -
     return Intervals(inside.astype(np.int64), enter[:, None], leave[:, None])
 
 
+def box_grid_intervals(
+    low: Floats, high: Floats, axis: int, u: Floats, v: Floats, ends: tuple[float, float]
+) -> Intervals:
+    """Return where rays along an axis of a box are in it, between two ends of that axis: row by row of a grid, at u (columns,) on the next
+    axis and v (rows,) on the one after; one along a side is inside."""
+    first, last = max(float(low[axis]), ends[0]), min(float(high[axis]), ends[1])
+    columns, rows = (
+        (at >= low[k % 3] - tolerance.PARAMETRIC) & (at <= high[k % 3] + tolerance.PARAMETRIC)
+        for k, at in ((axis + 1, u), (axis + 2, v))
+    )
+    inside = (rows[:, None] & columns).reshape(-1, 1) & (last > first)
+    return Intervals(inside[:, 0].astype(np.int64), inside * first, inside * last)
+
+
 def mesh_intervals(points: Floats, triangles: Ints, start: Floats, direction: Floats) -> Intervals:
     """Return where rays from `start` (n, 3) along a unit `direction` (3,) are in a closed mesh, its triangles anticlockwise from outside.
 

@@ -11,6 +11,7 @@ from pytest import approx
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh, welded
 from trunnion.model.blank import Box, Faceted, Revolved
+from trunnion.model.blank.base import BlankBase
 from trunnion.model.setup import Setup
 from trunnion.pipeline.proof.playback import fresh_of
 from trunnion.store.mapping import Members, from_xml, to_xml
@@ -78,6 +79,20 @@ def test_rays_are_inside_where_points_on_them_are(blank, direction):
             said |= (k < found.count) & (found.low[:, k] <= along) & (along <= found.high[:, k])
         sure = np.abs(inward) > 1e-9
         assert (said == (inward > 0.0))[sure].all()
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("ends", [(-100.0, 100.0), (1.0, 2.0), (50.0, 60.0)])
+def test_rays_of_a_grid_through_a_box_are_those_of_its_slabs(axis, ends):
+    box = Box(frame=WORLD, low=[-3, -4, -5], high=[3, 4, 5], material="x", density=1.0)
+    u, v = np.linspace(-6.0, 6.0, 13), np.linspace(-7.0, 7.0, 15)
+    quick, plain = (
+        box.grid_intervals(axis, u, v, ends),
+        BlankBase.grid_intervals(box, axis, u, v, ends),
+    )
+    assert (plain.count.sum() > 0) == (ends[0] < 5.0)
+    for a, b in ((quick.count, plain.count), (quick.low, plain.low), (quick.high, plain.high)):
+        np.testing.assert_array_equal(a, b)
 
 
 def test_a_ray_through_a_ring_is_inside_twice():

@@ -16,9 +16,11 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.geometry.rays import Intervals
+from trunnion.geometry.rays import Intervals, stacked
 
 S = TypeVar("S", covariant=True)
+RAYS = 500_000
+"""Rays sent through a blank together: some tens of MB of tables."""
 FINER = 2
 """Positions looked at along a side of a cell when the highest material over it is sought, beside its edges'."""
 
@@ -89,6 +91,23 @@ class BlankBase(ABC):
     @abstractmethod
     def intervals(self, start: Floats, direction: Floats) -> Intervals:
         """Return where rays from `start` (n, 3) along a unit `direction` (3,), both in its own frame, are inside."""
+
+    def grid_intervals(
+        self, axis: int, u: Floats, v: Floats, ends: tuple[float, float]
+    ) -> Intervals:
+        """Return where rays along an axis (0, 1, 2) of its own frame are inside, between two ends of that axis.
+
+        Ray row * columns + column stands at u[column] on the axis after it and v[row] on the one after that.
+        """
+        direction, rows = np.eye(3)[axis], max(1, RAYS // len(u))
+        parts = []
+        for first in range(0, len(v), rows):
+            some = v[first : first + rows]
+            start = np.zeros((len(some) * len(u), 3))
+            start[:, (axis + 1) % 3] = np.tile(u, len(some))
+            start[:, (axis + 2) % 3] = np.repeat(some, len(u))
+            parts.append(self.intervals(start, direction).clipped(*ends))
+        return stacked(parts)
 
     def depth(self, points: Floats, frame: Frame) -> Floats:
         """Return how far below its surface points (n, 3) in a frame are at most (n,) mm, 0 outside: material left uncut on them."""

@@ -11,7 +11,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints, floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.region import Region
-from trunnion.geometry.rays import Intervals, box_intervals
+from trunnion.geometry.rays import Intervals, box_grid_intervals, box_intervals
 from trunnion.model.blank.base import BlankBase, Builder, S
 
 _QUADS = np.array(
@@ -54,6 +54,12 @@ class Box(BlankBase):
     def intervals(self, start: Floats, direction: Floats) -> Intervals:
         """See `BlankBase`."""
         return box_intervals(self.low, self.high, start, direction)
+
+    def grid_intervals(
+        self, axis: int, u: Floats, v: Floats, ends: tuple[float, float]
+    ) -> Intervals:
+        """See `BlankBase`."""
+        return box_grid_intervals(self.low, self.high, axis, u, v, ends)
 
     def depth(self, points: Floats, frame: Frame) -> Floats:
         """See `BlankBase`; of a box that stands askew in the frame, of the box around it."""

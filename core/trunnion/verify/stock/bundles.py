@@ -10,7 +10,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.blank import Blank
-from trunnion.verify.stock.field import UP, Field, Part, cells_along, rays_in, tiles_of
+from trunnion.verify.stock.field import UP, Field, Part, cells_along, tiles_of
 
 AXES = ("x", "y", "z")
 SPARE = 4
@@ -46,7 +46,7 @@ class Bundle:
         u, v = (
             o + (np.arange(n) + 0.5) * pitch for o, n in zip(origin, (columns, rows), strict=True)
         )
-        inside = rays_in(blank, axis, u, v, (first[axis], last[axis]))
+        inside = blank.grid_intervals(axis, u, v, (first[axis], last[axis]))
         capacity = max(SPARE, inside.low.shape[1])
         low, high = (
             np.pad(a, ((0, 0), (0, capacity - a.shape[1]))) for a in (inside.low, inside.high)

@@ -11,15 +11,12 @@ from numpy.typing import NDArray
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.geometry.rays import Intervals, stacked
 from trunnion.model.blank import Blank
 
 Part = tuple[NDArray, ...]
 """A tile's copy: heights of columns, or of rays how many intervals each has, and all their lower and upper ends, closely packed."""
 UP = 2
 """The axis along whose rays the engagement is measured."""
-RAYS = 500_000
-"""Rays sent through a blank together: some tens of MB of tables."""
 TILES = 16
 """Bands of rows that a bundle is cut in; fixed, so that nothing depends on the number of threads."""
 
@@ -45,7 +42,7 @@ class Field:
             np.minimum(low[k] + (np.arange(n) + 0.5) * pitch, high[k])
             for k, n in enumerate((columns, rows))
         )
-        inside = rays_in(blank, UP, x, y, (low[2], high[2]))
+        inside = blank.grid_intervals(UP, x, y, (low[2], high[2]))
         lifted = inside.low[:, 0] > low[2] + tolerance.PARAMETRIC
         if (inside.count > 1).any() or (lifted & (inside.count > 0)).any():
             return None
@@ -87,19 +84,3 @@ def tiles_of(rows: int) -> list[tuple[int, int]]:
     """Return the first row and the one after the last of each tile of some rows."""
     edges = np.linspace(0, rows, min(TILES, rows) + 1).round().astype(int)
     return [(int(a), int(b)) for a, b in pairwise(edges)]
-
-
-def rays_in(blank: Blank, axis: int, u: Floats, v: Floats, ends: tuple[float, float]) -> Intervals:
-    """Return where rays along an axis (0, 1, 2) of a blank's frame are in it, between two ends of that axis.
-
-    Ray row * columns + column stands at u[column] on the axis after it and v[row] on the one after that.
-    """
-    direction, rows = np.eye(3)[axis], max(1, RAYS // len(u))
-    parts = []
-    for first in range(0, len(v), rows):
-        some = v[first : first + rows]
-        start = np.zeros((len(some) * len(u), 3))
-        start[:, (axis + 1) % 3] = np.tile(u, len(some))
-        start[:, (axis + 2) % 3] = np.repeat(some, len(u))
-        parts.append(blank.intervals(start, direction).clipped(*ends))
-    return stacked(parts)
