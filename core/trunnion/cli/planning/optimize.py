@@ -98,13 +98,32 @@ def highest_load(operations: Iterable[Operation]) -> str:
 
 
 def estimate_table(areas: Estimate) -> str:
-    """Return the times of areas by their rates as aligned text, and what they gain."""
-    rows = [("area finished by", "tool", "mm2", "mm2/s", "s")]
+    """Return the times of areas by their rates and by feature as aligned text, and what cutters of their own gain."""
+    rows = [("area finished by", "tool", "mm2", "mm2/s", "s", "alone s")]
     rows += [
-        (a.operation, a.tool, f"{a.area:.1f}", f"{a.rate:.2f}", f"{a.seconds:.0f}")
+        (
+            a.operation,
+            a.tool,
+            f"{a.area:.1f}" if a.area else "rest",
+            f"{a.rate:.2f}" if a.rate else "",
+            f"{a.seconds:.0f}",
+            f"{a.seconds_alone:.0f}",
+        )
         for a in areas.areas
     ]
+    rows += [
+        (
+            f"{t.feature} in all",
+            "",
+            f"{t.area:.1f}",
+            "",
+            f"{t.seconds:.0f}",
+            f"{t.seconds_alone:.0f}",
+        )
+        for t in areas.totals
+    ]
     return (
-        f"{table(rows, right=(2, 3, 4))}\n{areas.alone} alone: {areas.seconds_alone:.0f} s, with cutters of their own "
-        f"{areas.seconds:.0f} s: {100.0 * areas.gain:.2f} % more efficient, {100.0 * areas.saving:.2f} % of the time saved"
+        f"{table(rows, right=(2, 3, 4, 5))}\n{areas.alone} alone, each area at its own rate for such places: "
+        f"{areas.seconds_alone:.0f} s; with cutters of their own {areas.seconds:.0f} s: {100.0 * areas.gain:.2f} % more efficient, "
+        f"{100.0 * areas.saving:.2f} % of the time saved"
     )

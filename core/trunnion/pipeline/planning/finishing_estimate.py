@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from trunnion.model.motion.toolpath import Mark
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
-from trunnion.plan.freeform.estimate.finishing_time import Estimate, estimate_of, measured
+from trunnion.plan.freeform.estimate.finishing_time import Estimate, PathFigures, estimate_of
 from trunnion.toolpath.motion.time import machining_time
 
 
@@ -15,15 +16,22 @@ def estimate(session: Session, context: Context) -> Estimate | None:
     """
     if session.process is None:
         return None
-    found = estimate_of(session.process, context.part.graph().area)
-    if found is None or not session.paths:
-        return found
-    machines = {s.name: context.shop.machine(s.machine) for s in session.process.setups}
-    seconds = {}
-    for area in found.areas:
-        made = session.path_of(area.operation)
+    return estimate_of(session.process, context.part.graph().area, _paths(session, context))
+
+
+def _paths(session: Session, context: Context) -> dict[str, PathFigures]:
+    """Return what the operations' toolpaths take, by operation; nothing before there are any."""
+    process = session.process
+    if process is None or not session.paths:
+        return {}
+    machines = {s.name: context.shop.machine(s.machine) for s in process.setups}
+    found = {}
+    for operation in process.operations:
+        made = session.path_of(operation.id)
         if made is not None and len(made.path):
-            seconds[area.operation] = machining_time(
-                made.path, machines[session.process.operation(area.operation).setup]
+            path = made.path
+            found[operation.id] = PathFigures(
+                seconds=machining_time(path, machines[operation.setup]),
+                length=float(path.lengths()[path.mark == Mark.CUT].sum()),
             )
-    return measured(found, seconds)
+    return found

@@ -14,15 +14,17 @@ _MOST_ROWS = 8
 
 
 class AreasBlock(QWidget):
-    """A table of the areas that are finished, and the gain over the slowest cutter alone in words; hidden where there are none."""
+    """A table of the areas that are finished and of each feature's total, and the gain over one cutter in words; hidden where
+    there are none."""
 
     def __init__(self, document: Document) -> None:
         super().__init__()
         self._finished: list[str] = []
-        self.table = tables.table([tr("Area of"), "mm²", "mm²/s", tr("Time")], has_names=True)
-        self.table.cellClicked.connect(
-            lambda row, _: document.selection.select_operation(self._finished[row])
+        self._selection = document.selection
+        self.table = tables.table(
+            [tr("Area of"), "mm²", "mm²/s", tr("Time"), tr("By one cutter")], has_names=True
         )
+        self.table.cellClicked.connect(lambda row, _: self._select(row))
         self.gain = QLabel()
         self.gain.setWordWrap(True)
         column = QVBoxLayout(self)
@@ -33,19 +35,26 @@ class AreasBlock(QWidget):
         self.hide()
 
     def show_estimate(self, found: EstimatedTimes | None) -> None:
-        """Show how long each area takes by its rate, and the gain over the slowest cutter alone; nothing where no areas are finished."""
+        """Show how long each area takes by its rate, and the gain over the smallest cutter alone; nothing where no areas are finished."""
         self.setVisible(found is not None)
         if found is None:
             return
         self._finished = [a.operation for a in found.rows]
         rows = [
-            (a.operation, amount(a.area, 1), amount(a.rate, 2), duration(a.seconds))
+            (
+                a.operation or tr("{feature} in all").format(feature=a.feature),
+                amount(a.area, 1) if a.area else tr("rest"),
+                amount(a.rate, 2) if a.rate else "",
+                duration(a.seconds),
+                duration(a.seconds_alone),
+            )
             for a in found.rows
         ]
-        tables.fill(self.table, rows, right=(1, 2, 3))
+        tables.fill(self.table, rows, right=(1, 2, 3, 4))
         tables.fit_height(self.table, _MOST_ROWS)
         words = tr(
-            "{tool} alone: {alone}; with their own cutters {own}: {gain} % more efficient, {saving} % of the time saved ({source})"
+            "{tool} alone, each area at its own rate for such places: {alone}; with their own cutters {own}: {gain} % more efficient, "
+            "{saving} % of the time saved ({source})"
         )
         self.gain.setText(
             words.format(
@@ -59,3 +68,7 @@ class AreasBlock(QWidget):
                 else tr("from feed and distance of passes"),
             )
         )
+
+    def _select(self, row: int) -> None:
+        if self._finished[row]:
+            self._selection.select_operation(self._finished[row])

@@ -42,18 +42,20 @@ class Accuracy:
 
 @dataclass(frozen=True, slots=True)
 class AreaRow:
-    """An operation that finishes an area: mm2, mm2/s, s."""
+    """An operation that finishes an area, or all that finish a feature (then `operation` is empty): mm2, mm2/s, s, and s by the smallest
+    cutter alone; a rest has no area and no rate."""
 
     operation: str
-    tool: str
+    feature: str
     area: float
     rate: float
     seconds: float
+    seconds_alone: float
 
 
 @dataclass(frozen=True, slots=True)
 class EstimatedTimes:
-    """The time of finishing by area rates, s; that of the slowest cutter alone, and what cutters of their own gain and save, as shares.
+    """The time of finishing by area rates, s; that of the smallest cutter alone, and what cutters of their own gain and save, as shares.
 
     `is_measured`: the rates are those of toolpaths, not computed from feed and passes.
     """
@@ -155,7 +157,10 @@ def estimate(
     found = estimated(session, engine.context_of(session))
     if found is None:
         return None
-    rows = tuple(AreaRow(a.operation, a.tool, a.area, a.rate, a.seconds) for a in found.areas)
+    rows = tuple(
+        AreaRow(a.operation, a.feature, a.area, a.rate, a.seconds, a.seconds_alone)
+        for a in found.areas
+    ) + tuple(AreaRow("", t.feature, t.area, 0.0, t.seconds, t.seconds_alone) for t in found.totals)
     return EstimatedTimes(
         rows,
         found.seconds,
