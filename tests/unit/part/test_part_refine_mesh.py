@@ -22,6 +22,15 @@ def test_one_patch_alone_is_an_open_part(suffix) -> None:
     assert "part.open" in {f.code for f in part.findings}
 
 
+@pytest.mark.parametrize("suffix", ["step", "igs"])
+def test_pieces_of_several_patches_each_are_one_open_part(suffix) -> None:
+    corner = cq.Shell.makeShell(faces(">Z", ">X"))
+    pieces = [corner, corner.moved(cq.Location((100.0, 0.0, 0.0)))]
+    part = read(cq.Compound.makeCompound(pieces).wrapped, suffix)
+    assert part.n_faces == 4 and part.n_solids == 1 and not part.is_closed
+    assert part.area == pytest.approx(2.0 * (40.0 * 30.0 + 30.0 * 20.0))
+
+
 def test_patches_that_do_not_meet_are_one_open_part() -> None:
     part = read(cq.Compound.makeCompound(faces(">Z", "<Z", ">X")).wrapped, "igs")
     assert part.tags == (1, 2, 3) and part.n_solids == 1 and not part.is_closed

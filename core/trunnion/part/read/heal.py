@@ -60,9 +60,8 @@ def bodies_of(as_read: Shape) -> tuple[list[Body], list[Finding]]:
         return [_body(solid, tagged, _same) for solid in solids], []
     sewn, image, findings = _sewn(as_read)
     bodies = [_body(_solid(shell), tagged, image) for shell in shells_of(sewn)]
-    if not any(body.is_closed for body in bodies) and sum(len(body.tags) for body in bodies) < len(
-        tagged
-    ):
+    whole = len(bodies) == 1 and len(bodies[0].tags) == len(tagged)
+    if not whole and not any(body.is_closed for body in bodies):
         bodies = [_body(sewn, tagged, image)]
     return [body for body in bodies if body.tags], findings
 
