@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trunnion import tolerance
 from trunnion.geometry.plane.region import Region
@@ -27,7 +27,8 @@ class ToolRequirement:
     that it can enter and turn. `keep`: for floors, the distance from the finished walls beside the fillet's own; then it is the cutter's
     flat that has to cover what is wanted (below 0: the whole disc). `near`: how much smaller than the largest candidate a cutter may be,
     as a share of its diameter, to be chosen because it serves other requirements too. `cusps`: only what stays in sharp inner edges may be
-    missed, where no cutter gets; a passage that smaller cutters get through may not.
+    missed, where no cutter gets; a passage that smaller cutters get through may not. `others`: further pairs of an
+    envelope's area and what is wanted in it, at other heights, that the same cutter has to serve.
     """
 
     depth: float
@@ -41,6 +42,15 @@ class ToolRequirement:
     keep: float = -1.0
     near: float = 0.5
     cusps: bool = False
+    others: tuple[tuple[Region, Region], ...] = ()
+
+    def each(self) -> tuple[ToolRequirement, ...]:
+        """Return a requirement for each of its areas."""
+        alone = replace(self, others=())
+        return (
+            alone,
+            *(replace(alone, envelope_area=area, wanted=wanted) for area, wanted in self.others),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,20 +140,22 @@ def _fitting(requirement: ToolRequirement, tools: Sequence[Tool], progress: Prog
 
     Where one fits, so do all smaller ones: the largest is looked for.
     """
-    most = _missable(requirement, tools)
+    areas = [(area, _missable(area, tools)) for area in requirement.each()]
     for tool in progress.each(sorted(tools, key=lambda t: -t.diameter)):
         if requirement.spare > 1.0 and not requirement.envelope_area.offset(
             -requirement.spare * tool.radius
         ):
             continue
-        if _missed_area(requirement, tool) <= most(tool):
+        if all(_missed_area(area, tool) <= most(tool) for area, most in areas):
             return [t for t in tools if t.diameter <= tool.diameter]
     return []
 
 
 def fits_through(requirement: ToolRequirement, tool: Tool, tools: Sequence[Tool]) -> bool:
     """Return whether a cutter covers what is wanted, but for what may be missed, as well as the others of the catalogue would."""
-    return _missed_area(requirement, tool) <= _missable(requirement, tools)(tool)
+    return all(
+        _missed_area(area, tool) <= _missable(area, tools)(tool) for area in requirement.each()
+    )
 
 
 def _missed_area(requirement: ToolRequirement, tool: Tool) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -193,6 +194,20 @@ def test_a_blend_over_a_zone_is_nearly_even_where_a_harmonic_one_crowds() -> Non
     slope = metric.slope(blend(metric, rims[0], rims[1]))
     # A harmonic one is as steep as the circles are short: sin 0.6 / sin 0.1, over five times.
     assert np.percentile(slope, 98) < 1.6 * np.percentile(slope, 2)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_blend_stays_between_its_guides_where_triangles_are_folded_or_flat(seed) -> None:
+    sheet, random = fine(plane()), np.random.default_rng(seed)
+    x, (ends, side) = sheet.points[:, 0], sheet.edges()
+    share = np.ones(len(ends))
+    some = random.choice(len(ends), len(ends) // 10, replace=False)
+    share[some] = random.choice([0.02, 30.0], len(some))
+    metric = plain(sheet)
+    crooked = replace(metric, lengths=metric.lengths * share[side])
+    field = blend(crooked, np.flatnonzero(x == 0.0), np.flatnonzero(x == 6.0))
+    assert (field.min(), field.max()) == (0.0, 1.0)
+    assert field[x == 6.0] == approx(1.0) and field[x == 0.0] == approx(0.0)
 
 
 def test_turns_about_a_tube_grow_by_one_on_the_way_round() -> None:

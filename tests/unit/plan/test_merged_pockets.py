@@ -55,3 +55,13 @@ def test_the_lip_between_pockets_that_share_their_space_is_not_gouged(pockets, t
     assert verdict.collisions == 0 and verdict.rapids_in_stock == 0
     # Against the lip a cutter that is rounder than the lip is high leaves some of the fillets.
     assert verdict.reachable > 0.98
+
+
+def test_the_cutters_of_merged_pockets_fit_through_the_narrowest_of_them(tmp_path):
+    # 18 mm between the walls of the second, less the fillets of 3 mm at their feet on both sides.
+    session = _session(
+        [_pocket(6.0, 60.0, 5.0, 0.0), _pocket(59.0, 77.0, 5.5, 3.0)], tmp_path, "route"
+    )
+    (pocket,) = session.recognition.of_kind("pocket")
+    for kind in ("rough", "wall"):
+        assert session.process.operation(f"{kind}-{pocket.id}").cutter.diameter <= 12.0

@@ -22,6 +22,8 @@ from trunnion.progress import NO_PROGRESS, Progress
 
 POWERS = (2.0, 3.0, 4.0, 4.0, 6.0, 6.0, 6.0)
 """Powers of the slope, one after the other: each begins where the one before ended."""
+BEYOND = 0.05
+"""How far a blend may go past the values of its guides."""
 FLATTEST = 1e-3
 """Slope, as a share of the middle one, below which a triangle's weight falls no further: a weight of nothing can't be solved for."""
 
@@ -106,6 +108,7 @@ def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = NO_PROGRES
     field[one] = 1.0
     fixed[zero], fixed[one] = True, True
     weight, free = np.ones(len(metric.sheet.triangles)), np.flatnonzero(~fixed)
+    even = field.copy()
     for turn, power in enumerate(POWERS if len(free) else ()):
         progress.at(turn / len(POWERS), "Laying flow lines")
         matrix = metric.stiffness(weight)[free]
@@ -118,7 +121,16 @@ def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = NO_PROGRES
         weight = np.maximum(slope / middle, FLATTEST) ** (
             POWERS[min(turn + 1, len(POWERS) - 1)] - 2.0
         )
-    return field
+        even = field.copy() if _is_between(field) else even
+    return np.asarray(np.clip(even, 0.0, 1.0))
+
+
+def _is_between(field: Floats) -> bool:
+    """Return whether a blend keeps the maximum principle: no value beyond those at the guides, but for what obtuse triangles may add.
+
+    On a folded or nearly flat triangle the powers of the slope run away; a blend of less power is taken then.
+    """
+    return bool(np.isfinite(field).all() and np.abs(field - 0.5).max(initial=0.0) <= 0.5 + BEYOND)
 
 
 def turns_about(metric: Metric, first: Ints, second: Ints) -> tuple[Floats, Ints]:

@@ -165,14 +165,16 @@ def _rough_tasks(
 ) -> list[OperationTask]:
     def make(feature: Feature, bands: tuple[Band, ...]) -> OperationTask:
         is_open = feature.kind == "open_pocket"
+        distance = state.settings.wall_allowance + _wider_foot(state, feature)
         requirement = ToolRequirement(
             depth=_depth(state, bands),
-            envelope_area=_kept_off(bands[-1].boundary, state.settings.wall_allowance),
-            wanted=_kept_off(bands[-1].wanted, state.settings.wall_allowance),
+            envelope_area=_kept_off(bands[-1].boundary, distance),
+            wanted=_kept_off(bands[-1].wanted, distance),
             corner_radius=floor_fillet(feature),
             missable=state.settings.missable,
             spare=1.0 if is_open else SPARE,
             near=NEAR_ROUGH,
+            others=_higher(bands, distance),
         )
         if not is_open and not any(
             bands[-1].boundary.offset(-SPARE * t.radius) for t in catalogue(state, stage)
@@ -214,23 +216,25 @@ def _floor_tasks(
             candidates(walling, tools, clearance, state.progress).tools
             or candidates(replace(walling, exact=False), tools, clearance, state.progress).tools
         )
-        inner = bands[-1].wanted.offset(
-            STRIP_OVERLAP - min((t.diameter - t.corner_radius for t in walls), default=0.0)
-        )
+        strip = min((t.diameter - t.corner_radius for t in walls), default=0.0) - STRIP_OVERLAP
+        inner = bands[-1].wanted.offset(-strip)
+        distance = floor_distance(state.settings) + _wider_foot(state, feature)
         whole = ToolRequirement(
             depth=_depth(state, bands),
-            envelope_area=_kept_off(bands[-1].boundary, floor_distance(state.settings)),
-            wanted=_kept_off(bands[-1].wanted, floor_distance(state.settings)),
+            envelope_area=_kept_off(bands[-1].boundary, distance),
+            wanted=_kept_off(bands[-1].wanted, distance),
             corner_radius=floor_fillet(feature),
             missable=state.settings.missable,
             near=NEAR_FLOOR,
+            others=_higher(bands, distance),
         )
         rest = replace(
             whole,
             envelope_area=bands[-1].boundary,
             wanted=inner,
-            keep=floor_distance(state.settings),
+            keep=distance,
             missable=0.0,
+            others=tuple((b.boundary, b.wanted.offset(-strip)) for b in bands[:-1]),
         )
         requirement = (
             rest if inner and candidates(rest, tools, clearance, state.progress).tools else whole
@@ -474,7 +478,22 @@ def _task(
 
 def _kept_off(area: Region, distance: float) -> Region:
     """Return what is left of an area off its walls by what an operation keeps from them; the area itself where nothing is."""
-    return area.offset(-distance) or area
+    return (area.offset(-distance) if distance > 0.0 else area) or area
+
+
+def _wider_foot(state: PanelPlanState, feature: Feature) -> float:
+    """Return by how much the widest fillet at a pocket's floors is wider than its own: where pockets run into one another, a sharp foot of
+    one may stand for a filleted one of another."""
+    feet = [state.space.fillet_at(feature, z) for z in state.space.floors_of(feature).values()]
+    return max(feet, default=0.0) - min(floor_fillet(feature), max(feet, default=0.0))
+
+
+def _higher(bands: tuple[Band, ...], distance: float = 0.0) -> tuple[tuple[Region, Region], ...]:
+    """Return the areas at the floors above the lowest, kept off their walls: pockets that run into one another have passages of their own
+    at each height."""
+    return tuple(
+        (_kept_off(b.boundary, distance), _kept_off(b.wanted, distance)) for b in bands[:-1]
+    )
 
 
 def _depth(state: PanelPlanState, bands: tuple[Band, ...]) -> float:
@@ -483,16 +502,18 @@ def _depth(state: PanelPlanState, bands: tuple[Band, ...]) -> float:
 
 
 def _wall_task(state: PanelPlanState, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
+    distance = _wider_foot(state, feature)
     return ToolRequirement(
         depth=_depth(state, bands),
-        envelope_area=bands[-1].boundary,
-        wanted=bands[-1].wanted,
+        envelope_area=_kept_off(bands[-1].boundary, distance),
+        wanted=_kept_off(bands[-1].wanted, distance),
         corner_radius=floor_fillet(feature),
         exact=True,
         radius=number(feature, "corner_radius") * state.settings.corner_share,
         missable=SHARP,
         near=NEAR_WALL,
         cusps=True,
+        others=_higher(bands, distance),
     )
 
 
