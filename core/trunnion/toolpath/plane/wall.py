@@ -211,9 +211,9 @@ def _heights(
         else ()
     )
     heights = [*straight, *(guide.bottom + t for t in foot[1 if straight else 0 :])]
-    heights = with_tops(heights, guide.top, tops)
     return [
-        (z, foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom)) for z in heights
+        (z, foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom))
+        for z in with_tops(heights, guide.top, tops)
     ]
 
 

@@ -46,26 +46,34 @@ def collision_boxes(
     if not len(rows) or not _constant_axis(moves, rows, axis):
         return ()
     met = (contact.depth[rows, 1] > allowed) | (contact.fixture_depth[rows] > allowed)
-    in_part, in_stock = rows[met], rows[~met & (stock.body_depth[rows] > allowed)]
-    tips = [_tips(moves, in_stock)[0]]
-    tip, of = _tips(moves, in_part)
-    if len(tip):
-        tool = moves.tools[moves.tool[rows[0]]]
+    in_stock, _ = _tips(moves, rows[~met & (stock.body_depth[rows] > allowed)])
+    in_part = _colliding(moves, rows[met], axis, parts, allowed) if met.any() else in_stock[:0]
+    return _rounded(boxes_around(np.concatenate([in_stock, in_part]), MOST_BOXES))
 
-        def collides(at: Floats) -> Bools:
-            met = parts.along(poses_of(tool, at, np.repeat(axis, len(at), axis=0)), threads=1)
-            return np.asarray((met.depth[:, 1] > allowed) | (met.fixture_depth > allowed))
 
-        hits = collides(tip)
-        # What is met only between two tips is taken with all of its move.
-        hits |= ~np.isin(of, of[hits])
-        nearby = _nearby(tip[hits], axis[0], tool.diameter)
-        tips += [tip[hits], nearby[collides(nearby)]]
-    boxes = boxes_around(np.concatenate(tips), MOST_BOXES)
-    step = 10.0**DECIMALS
-    inside = tolerance.COINCIDENT
-    low = np.floor((boxes[:, :3] + inside) * step) / step
-    high = np.ceil((boxes[:, 3:] - inside) * step) / step
+def _colliding(
+    moves: Moves, rows: Ints, axis: Floats, parts: PartContact, allowed: float
+) -> Floats:
+    """Return tips (k, 3) at which the tool, its axis (1, 3), collides with part or fixtures, on some moves that do and near them."""
+    tool = moves.tools[moves.tool[rows[0]]]
+
+    def collides(tip: Floats) -> Bools:
+        met = parts.along(poses_of(tool, tip, np.repeat(axis, len(tip), axis=0)), threads=1)
+        return np.asarray((met.depth[:, 1] > allowed) | (met.fixture_depth > allowed))
+
+    tip, of = _tips(moves, rows)
+    hits = collides(tip)
+    # What is met only between two tips is taken with all of its move.
+    hits |= ~np.isin(of, of[hits])
+    nearby = _nearby(tip[hits], axis[0], tool.diameter)
+    return np.concatenate([tip[hits], nearby[collides(nearby)]])
+
+
+def _rounded(boxes: Floats) -> tuple[Box, ...]:
+    """Return boxes (b, 6) rounded outwards."""
+    step, same = 10.0**DECIMALS, tolerance.COINCIDENT
+    low = np.floor((boxes[:, :3] + same) * step) / step
+    high = np.ceil((boxes[:, 3:] - same) * step) / step
     return tuple(tuple(float(v) + 0.0 for v in box) for box in np.hstack([low, high]))
 
 
