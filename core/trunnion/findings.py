@@ -60,7 +60,8 @@ class Fix:
 
     `kind` is a registered name (`registry.FIXES`), `operation` the id of the operation to be changed (empty where `faces` say what is to be
     finished), `reason` the code of the finding; `amount` what was measured: how deep something enters, mm, or for `feed` the share of the
-    feed that a limit leaves.
+    feed that a limit leaves. `boxes` say where, as the lowest and the highest corner (x, y, z, x, y, z) in mm in the setup's frame of what
+    the tip runs through; none where that isn't known, of a tool that leans.
     """
 
     kind: str
@@ -68,16 +69,18 @@ class Fix:
     reason: str = ""
     amount: float = 0.0
     faces: tuple[int, ...] = ()
+    boxes: tuple[tuple[float, ...], ...] = field(default=(), metadata=ADDED_UNWRITTEN)
 
     def as_dict(self) -> dict[str, object]:
         """Return the fix as the JSON that other programs rely on."""
-        return {
+        entry: dict[str, object] = {
             "kind": self.kind,
             "operation": self.operation,
             "reason": self.reason,
             "amount": self.amount,
             "faces": list(self.faces),
         }
+        return {**entry, "boxes": [list(b) for b in self.boxes]} if self.boxes else entry
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

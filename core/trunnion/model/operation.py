@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from trunnion.findings import Finding
+from trunnion.model.keep_out import KeepOutBox
 from trunnion.model.motion.toolpath import EMPTY, Toolpath
 from trunnion.model.spindle import FeedMode, SpindleMode, limited_turns, per_revolution
 from trunnion.model.tool import AnyTool, Tool, rotating
@@ -96,7 +97,8 @@ class Operation:
     `strategy` is a registered name; `feature` the id of the feature it machines; `faces` the tags it finishes (empty for roughing);
     `choices` the values of the strategy's settings by full key; `rules` why this operation, tool and order; `after` the ids of operations
     that must come before it; `direction`, in the setup's frame, where the tool comes from (3 + 2 axes where that is not z); `by_hand` marks
-    a person's change; `suppressed` keeps it in the tree without cutting.
+    a person's change; `suppressed` keeps it in the tree without cutting; `avoid` are boxes in its cutting frame that its tip keeps out of
+    (a tool that leans knows none).
     """
 
     id: str
@@ -114,6 +116,7 @@ class Operation:
     suppressed: bool = False
     group: str = ""
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    avoid: tuple[KeepOutBox, ...] = added((), written=False)
 
     @property
     def cutter(self) -> Tool:

@@ -68,6 +68,7 @@ WORDS = {
     "approach": "finished by a tool that leans",
     "clear_first": "what stands in the way roughed before",
     "drop": "left out",
+    "exclude": "kept out of where its tool collides",
     "feed": "fed more slowly",
     "lift": "linked higher",
     "smaller_tool": "given a smaller cutter",

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.fixture import Fixture
+from trunnion.model.keep_out import KeepOutBox
+from trunnion.settings import added
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -15,7 +17,8 @@ class Setup:
 
     `frame` is the work offset's frame in the part's coordinates (z towards the spindle): toolpath positions are in it.
     `clearance` is the height in that frame above everything; `machine` a catalogue name; `work_offset` a word (`G54`); `fixtures` what
-    holds the part in it, which the proof lets nothing touch.
+    holds the part in it, which the proof lets nothing touch. While an operation is laid, `avoid` has the boxes, in the frame, that
+    its tip keeps out of.
     """
 
     name: str
@@ -24,6 +27,7 @@ class Setup:
     clearance: float
     machine: str
     fixtures: tuple[Fixture, ...] = ()
+    avoid: tuple[KeepOutBox, ...] = added((), written=False)
 
     def top(self, blank: Blank) -> float:
         """Return how high blank and fixtures stand, in the setup's frame."""

@@ -26,6 +26,7 @@ from trunnion.model.setup import Setup
 from trunnion.plan.clearance import ClearanceScene, RemainingStockQuery
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.fixtures import PlanFixture, off_fixtures
+from trunnion.plan.prismatic.keep_out import off_boxes
 from trunnion.progress import Progress
 from trunnion.registry import PLANNERS
 from trunnion.settings import Value, checked, choose, digest
@@ -194,14 +195,19 @@ def driven_by(
 ) -> OperationDrive:
     """Return the drive of an operation by the maker for the class that its strategy needs; raise `Refused` where there is none.
 
-    What fixtures keep its cutter from is cut off a plane drive; makers of other drives see to that themselves.
+    What fixtures, or the areas that it avoids, keep its cutter from is cut off a plane drive; makers of other drives see to that
+    themselves. Links know those areas by the drive's setup.
     """
     if needs.drive not in makers:
         raise Refused(
             f"{operation.id}: {operation.strategy} is driven by a {needs.drive.__name__}, which is not made for {planner.noun}; "
             "choose another strategy"
         )
-    driven = makers[needs.drive](operation, needs, scene, progress)
+    driven = _off_fixtures(makers[needs.drive](operation, needs, scene, progress), operation, scene)
+    return driven if needs.leans or not operation.avoid else _off_boxes(driven, operation)
+
+
+def _off_fixtures(driven: OperationDrive, operation: Operation, scene: Scene) -> OperationDrive:
     if not (scene.fixtures and isinstance(driven.drive, PlaneDrive)):
         return driven
     setup = driven.setup
@@ -211,3 +217,17 @@ def driven_by(
     )
     drive, findings = off_fixtures(driven.drive, operation.cutter, setup, fixtures)
     return replace(driven, drive=drive, identity=(driven.identity, drive), findings=findings)
+
+
+def _off_boxes(driven: OperationDrive, operation: Operation) -> OperationDrive:
+    setup = replace(driven.setup, avoid=operation.avoid)
+    if not isinstance(driven.drive, PlaneDrive):
+        return replace(driven, setup=setup)
+    drive, findings = off_boxes(driven.drive, operation.cutter, setup, operation.avoid)
+    return replace(
+        driven,
+        setup=setup,
+        drive=drive,
+        identity=(driven.identity, drive),
+        findings=(*driven.findings, *findings),
+    )

@@ -106,3 +106,6 @@ def _add_operation(root: Any, operation: Operation) -> None:
     if operation.direction != UPRIGHT:
         x, y, z = (text_of(float(v)) for v in operation.direction)
         add(element, "direction", x=x, y=y, z=z)
+    for box in operation.avoid:
+        (x0, y0), (x1, y1) = (tuple(text_of(float(v)) for v in end) for end in (box.low, box.high))
+        add(element, "avoid", x0=x0, y0=y0, x1=x1, y1=y1, top=text_of(float(box.top)))

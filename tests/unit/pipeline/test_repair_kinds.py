@@ -8,7 +8,10 @@ import cadquery as cq
 import pytest
 
 from trunnion.findings import BadInput, Fix, Severity
+from trunnion.model.keep_out import KeepOutBox
+from trunnion.model.motion.toolpath import Motion
 from trunnion.pipeline import Engine
+from trunnion.plan.repair.contract import numbered
 from trunnion.toolpath.motion import link
 
 LOW = 3.0
@@ -184,3 +187,28 @@ def test_a_smaller_cutter_after_a_larger_one_cuts_only_its_rest(dome):
         return len(path.path)
 
     assert length(trimmed) < 0.5 * length(planted)
+
+
+def test_a_finishing_operation_on_curved_faces_keeps_out_of_what_it_avoids(dome):
+    engine, session = dome
+    finish = next(
+        o for o in session.process.operations if o.kind == "finish" and o.cutter.form == "ball"
+    )
+
+    def laid(operation):
+        process = replace(session.process, operations=(replace(operation, after=()),))
+        made = engine.run(replace(session, process=numbered(process)), "toolpath")
+        path = made.paths[0].path
+        return made, path.position[path.motion != Motion.RAPID]
+
+    _, plain = laid(finish)
+    x, y = plain[:, :2].mean(axis=0)
+    avoid = KeepOutBox(low=(x - 6.0, y - 40.0), high=(x + 6.0, y + 4.0), top=100.0)
+    made, kept = laid(replace(finish, avoid=(avoid,)))
+    inside, after = (
+        ((tips[:, :2] > avoid.low) & (tips[:, :2] < avoid.high)).all(axis=1)
+        for tips in (plain, kept)
+    )
+    assert inside.sum() > 50 and not after.any() and len(after) > 0.3 * len(inside)
+    (told,) = (f for f in made.findings() if f.code == "operation.left-out")
+    assert finish.feature in told.where and "mm2" in told.text

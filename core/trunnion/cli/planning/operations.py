@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import asdict
 from typing import Any
 
 from trunnion.cli.common import table
@@ -26,6 +27,7 @@ def operation_dict(operation: Operation) -> dict[str, Any]:
         "after": list(operation.after),
         "by_hand": operation.by_hand,
         "suppressed": operation.suppressed,
+        **({"avoid": [asdict(b) for b in operation.avoid]} if operation.avoid else {}),
     }
 
 

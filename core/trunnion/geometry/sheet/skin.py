@@ -18,6 +18,7 @@ class Skin:
     points (v, 3) mm on the faces; normals (v, 3) the faces' own outward unit normals there; triangles (t, 3) rows of points, anticlockwise
     seen from outside; face (t,) 1-based tags. Points are shared inside a face, not across faces; where faces meet, their points coincide.
     bound: how far the triangles may be from the faces that were wanted fine, mm; others are within `tolerance.CHORD`.
+    avoid (k, 5): boxes that no tip is dropped into, as `DropSurface` has them.
     """
 
     points: Floats
@@ -25,6 +26,7 @@ class Skin:
     triangles: Ints
     face: Ints
     bound: float
+    avoid: Floats = field(default_factory=lambda: np.zeros((0, 5)))
     _drop: list[DropSurface] = field(init=False, repr=False, default_factory=list)
 
     def __post_init__(self) -> None:
@@ -39,7 +41,8 @@ class Skin:
     def drop(self) -> DropSurface:
         """The whole skin ready for dropping cutters along -z; made on first use."""
         if not self._drop:
-            self._drop.append(DropSurface.of(self.points, self.triangles))
+            made = DropSurface.of(self.points, self.triangles)
+            self._drop.append(replace(made, avoid=self.avoid) if len(self.avoid) else made)
         return self._drop[0]
 
     def of(self, tags: tuple[int, ...]) -> Bools:

@@ -41,6 +41,7 @@ class DropSurface:
 
     row (t,): which triangle each facet is; start (leaves + 1,) and boxes (nodes, 5) as `kernels/drop_bvh.py` describes them; planes:
     slopes along x and y and height over (0, 0) of planes that nothing is above of a node's facets (nodes, 3), and of a facet (t, 3).
+    `avoid` (k, 5): boxes in plan, x and y of both corners, and the height below which no dropped tip goes inside them.
     """
 
     facets: Floats
@@ -48,6 +49,7 @@ class DropSurface:
     start: Ints
     boxes: Floats
     planes: tuple[Floats, Floats]
+    avoid: Floats = field(default_factory=lambda: np.zeros((0, 5)))
     _lifts: dict[bytes, tuple[Floats, Floats]] = field(init=False, repr=False, default_factory=dict)
     _lattice: list[Lattice] = field(init=False, repr=False, default_factory=list)
 
@@ -86,9 +88,10 @@ class DropSurface:
         all or for each (n,).
 
         `pieces` (p, 6) is the cutter's lower side as `kernels/drop_cutter.py` describes it. Points that follow a
-        path are quicker than loose ones.
+        path are quicker than loose ones. Inside boxes that are avoided it is at least their height.
         """
-        return self.contacts(points, pieces, lowest, progress)[0]
+        height = self.contacts(points, pieces, lowest, progress)[0]
+        return np.maximum(height, tops_over(points, self.avoid)) if len(self.avoid) else height
 
     def contacts(
         self,
@@ -97,7 +100,7 @@ class DropSurface:
         lowest: float | Floats,
         progress: Progress = NO_PROGRESS,
     ) -> tuple[Floats, Ints, Floats]:
-        """Return what `drop` does, the triangle (n,) that is touched at each point, and where (n, 3).
+        """Return what `drop` does, with no box avoided, the triangle (n,) that is touched at each point, and where (n, 3).
 
         Where two triangles meet it is one of them; over nothing that is higher than `lowest`, -1 and NaN.
         """
@@ -254,3 +257,14 @@ def _owned(triangles: Ints, n_points: int) -> Ints:
         firsts = np.unique(keys, return_index=True)[1]
         np.bitwise_or.at(bits, firsts // 3, 1 << (firsts % 3 + first_bit))
     return bits
+
+
+def tops_over(points: Floats, boxes: Floats, around: float = 0.0) -> Floats:
+    """Return the height (n,) of the highest box (k, 5), as `DropSurface.avoid` has them, over plan points (n, 2); -inf outside all. Each
+    box is wider by `around` mm on every side."""
+    top = np.full(len(points), -np.inf)
+    for x0, y0, x1, y1, height in boxes:
+        x, y = points[:, 0], points[:, 1]
+        inside = (x > x0 - around) & (x < x1 + around) & (y > y0 - around) & (y < y1 + around)
+        top[inside] = np.maximum(top[inside], height)
+    return top

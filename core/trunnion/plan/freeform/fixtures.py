@@ -1,10 +1,10 @@
-"""What fixtures keep an upright cutter from on curved faces: it is cut off their area before passes are laid, and the fixtures stand in
-the skin that cutters are dropped on, so that passes and links go over them or end beside them."""
+"""What fixtures, or areas to avoid, keep an upright cutter from on curved faces: it is cut off their area before passes are laid, and the
+fixtures stand in the skin that cutters are dropped on, so that passes and links go over them or end beside them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,9 +13,10 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.mesh import welded
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.geometry.surface.drop_surface import DropSurface
+from trunnion.geometry.surface.drop_surface import DropSurface, tops_over
 from trunnion.model.blank import Blank
 from trunnion.model.fixture import Fixture
+from trunnion.model.keep_out import KeepOutBox, plan_boxes
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
@@ -51,7 +52,7 @@ class OffsetFixture:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class KeepOutArea:
-    """What fixtures keep a cutter from: an area in mm2 of faces, the fixtures' names, and a place there (3,) in the cutting frame."""
+    """What a cutter is kept from: an area in mm2 of faces, the names of fixtures, and a place there (3,) in the cutting frame."""
 
     area: float
     by: tuple[str, ...]
@@ -91,27 +92,16 @@ def off_fixtures(
     out, None where nothing is; `height` is the scallop height in mm that is wanted."""
     surface = _surface(fixtures)
 
-    def over(position: Floats, normal: Floats) -> Floats:
-        met = np.full(len(position), -np.inf)
-        up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        at = position[up] + 2.0 * skin.bound * normal[up]
-        tip = tip_at(tool, at, normal[up], np.tile([0.0, 0.0, 1.0], (len(at), 1)))
-        deepest = surface.drop(tip[:, :2], lower_side(tool), lowest, progress) - tip[:, 2]
+    def top(tip: Floats) -> Floats:
+        highest = surface.drop(tip, lower_side(tool), lowest, progress)
         for above, radius in tool.rings()[1:]:
-            top = surface.drop(tip[:, :2], level_disc(radius), lowest, progress)
-            deepest = np.maximum(deepest, top - above - tip[:, 2])
-        met[up] = deepest
-        return met
+            over = surface.drop(tip, level_disc(radius), lowest, progress)
+            highest = np.maximum(highest, over - above)
+        return highest
 
-    around = 2.0 * max(AROUND, stepover_on_plane(max(tool.corner_radius, height), height))
-    whole = float(skin.areas(skin.of(tags)).sum())
-    longest = max(MET, math.sqrt(whole / MOST))
-    met_skin, met = parted_near(skin, tags, over, around, longest, progress)
-    if not met:
+    met_skin, left, area, (low, high) = _above(skin, tags, tool, top, height, progress)
+    if not area:
         return skin, tags, None
-    left = tuple(t for t in tags if met_skin.of((t,)).any())
-    points = met_skin.points[met_skin.triangles[met_skin.of(met)]].reshape(-1, 3)
-    low, high = points.min(axis=0), points.max(axis=0)
     wide = max(radius for _, radius in tool.rings())
     by = tuple(
         f.name
@@ -119,8 +109,57 @@ def off_fixtures(
         if (f.corners[..., :2] <= high[:2] + wide).all(axis=2).any()
         and (f.corners[..., :2] >= low[:2] - wide).all(axis=2).any()
     )
-    area = whole - float(met_skin.areas(met_skin.of(left)).sum())
     return met_skin, left, KeepOutArea(area=area, by=by, at=0.5 * (low + high))
+
+
+def off_boxes(
+    skin: Skin,
+    tags: tuple[int, ...],
+    tool: Tool,
+    boxes: Sequence[KeepOutBox],
+    height: float,
+    progress: Progress = NO_PROGRESS,
+) -> tuple[Skin, tuple[int, ...], KeepOutArea | None]:
+    """Return the skin and the tags of what of faces an upright tool finishes with its tip outside boxes of the skin's frame, and what is
+    left out, None where nothing is; `height` is the scallop height in mm that is wanted. No tip is dropped into a box of the skin."""
+    avoid = plan_boxes(boxes)
+    met_skin, left, area, (low, high) = _above(
+        skin, tags, tool, lambda tip: tops_over(tip, avoid), height, progress, everywhere=True
+    )
+    lost = KeepOutArea(area=area, by=(), at=0.5 * (low + high)) if area else None
+    return replace(met_skin, avoid=avoid), left, lost
+
+
+def _above(
+    skin: Skin,
+    tags: tuple[int, ...],
+    tool: Tool,
+    top: Callable[[Floats], Floats],
+    height: float,
+    progress: Progress,
+    everywhere: bool = False,
+) -> tuple[Skin, tuple[int, ...], float, tuple[Floats, Floats]]:
+    """Return the skin and the tags of what of faces an upright tool finishes with its tip above tops (n,) over plan points (n, 2), and
+    what is left out: its area in mm2 and the corners (3,) of the box around it; the given skin and tags, 0 and zeros where nothing is."""
+
+    def over(position: Floats, normal: Floats) -> Floats:
+        met = np.full(len(position), -np.inf)
+        up = normal[:, 2] > -math.sin(tolerance.ANGLE)
+        at = position[up] + 2.0 * skin.bound * normal[up]
+        tip = tip_at(tool, at, normal[up], np.tile([0.0, 0.0, 1.0], (len(at), 1)))
+        met[up] = top(tip[:, :2]) - tip[:, 2]
+        return met
+
+    around = 2.0 * max(AROUND, stepover_on_plane(max(tool.corner_radius, height), height))
+    whole = float(skin.areas(skin.of(tags)).sum())
+    longest = max(MET, math.sqrt(whole / MOST))
+    met_skin, met = parted_near(skin, tags, over, around, longest, progress, everywhere)
+    if not met:
+        return skin, tags, 0.0, (np.zeros(3), np.zeros(3))
+    left = tuple(t for t in tags if met_skin.of((t,)).any())
+    points = met_skin.points[met_skin.triangles[met_skin.of(met)]].reshape(-1, 3)
+    area = whole - float(met_skin.areas(met_skin.of(left)).sum())
+    return met_skin, left, area, (points.min(axis=0), points.max(axis=0))
 
 
 def with_fixtures(skin: Skin, fixtures: Sequence[OffsetFixture]) -> Skin:

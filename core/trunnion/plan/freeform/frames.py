@@ -21,6 +21,14 @@ def is_upright(direction: Direction) -> bool:
     return direction[2] > np.cos(tolerance.ANGLE)
 
 
+def cutting_frame(frame: Frame, direction: Direction) -> Frame:
+    """Return a setup's frame as a tool from a direction (3,) in it sees it: z is that direction, the origin stays."""
+    if is_upright(direction):
+        return frame
+    z = frame.world_direction(np.asarray(direction, dtype=np.float64))
+    return Frame(frame.origin, frame.x if abs(frame.x @ z) < abs(frame.y @ z) else frame.y, z)
+
+
 def cutting_setup(setup: Setup, direction: Direction, blank: Blank) -> Setup:
     """Return a setup as a tool from a direction (3,) in its frame sees it: the frame's z is that direction, its origin stays.
 
@@ -28,9 +36,7 @@ def cutting_setup(setup: Setup, direction: Direction, blank: Blank) -> Setup:
     """
     if is_upright(direction):
         return setup
-    z = setup.frame.world_direction(np.asarray(direction, dtype=np.float64))
-    x = setup.frame.x if abs(setup.frame.x @ z) < abs(setup.frame.y @ z) else setup.frame.y
-    frame = Frame(setup.frame.origin, x, z)
+    frame = cutting_frame(setup.frame, direction)
     above = setup.clearance - setup.top(blank)
     turned = replace(setup, frame=frame)
     return replace(turned, clearance=turned.top(blank) + above)

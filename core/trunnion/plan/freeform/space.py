@@ -20,10 +20,17 @@ from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.finishing.rest import remaining_of, remaining_upright, without_met
-from trunnion.plan.freeform.fixtures import KeepOutArea, OffsetFixture, off_fixtures, with_fixtures
+from trunnion.plan.freeform.fixtures import (
+    KeepOutArea,
+    OffsetFixture,
+    off_boxes,
+    off_fixtures,
+    with_fixtures,
+)
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
-from trunnion.plan.prismatic.fixtures import kept_off
+from trunnion.plan.prismatic.fixtures import Notice, kept_off
+from trunnion.plan.prismatic.keep_out import excluded
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 
@@ -117,7 +124,7 @@ class SurfaceSpace:
         material that stands, `upright` the cutter that finished what an upright one comes to.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part, or any of it a fixture of the setup,
-        is none of its area.
+        is none of its area; neither is what it can't come to with its tip outside the boxes that the operation avoids.
         """
         height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
         thickness = LEFTOVER * operation.data.depth
@@ -139,6 +146,10 @@ class SurfaceSpace:
             )
         if fixtures:
             skin = with_fixtures(skin, fixtures)
+        boxes, avoided = () if needs.leans else operation.avoid, None
+        if boxes:
+            skin, faces, avoided = off_boxes(skin, faces, operation.cutter, boxes, height, progress)
+        notices = ((kept_off, refused), (excluded, avoided))
         identity = digest(
             self.part.digest,
             self.part.solid,
@@ -156,6 +167,7 @@ class SurfaceSpace:
             upright,
             thickness,
             needs.leans,
+            *((boxes,) if boxes else ()),
         )
         return SurfaceDrive(
             feature=operation.feature,
@@ -173,12 +185,16 @@ class SurfaceSpace:
             earlier=earlier,
             query_for=query_for,
             remaining_stock=remaining_stock,
-            findings=() if refused is None else (self._finding(operation, refused),),
+            findings=tuple(
+                self._finding(operation, area, notice)
+                for notice, area in notices
+                if area is not None
+            ),
         )
 
-    def _finding(self, operation: Operation, refused: KeepOutArea) -> Finding:
+    def _finding(self, operation: Operation, refused: KeepOutArea, notice: Notice) -> Finding:
         at = self.frame.to_world(refused.at)
         where = (operation.feature, *face_tags(operation.faces))
-        return kept_off(
+        return notice(
             operation.feature, f"{refused.area:.0f} mm2", refused.by, operation.cutter, at, where
         )

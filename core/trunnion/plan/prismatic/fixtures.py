@@ -1,4 +1,4 @@
-"""What fixtures keep a cutter from, seen along the tool: it is cut off a plane drive before passes are laid.
+"""What fixtures, or areas to avoid, keep a cutter from, seen along the tool: it is cut off a plane drive before passes are laid.
 
 Below its top a fixture is taken as solid down to the table: no upright tool gets under a clamp. A fixture that is nowhere higher than the
 blank's underside carries the blank, and a cutter may come down to it.
@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -63,9 +64,9 @@ class PlanFixture:
         foot = float(blank.box_in(setup.frame)[0][2]) + tolerance.SEW
         return PlanFixture(fixture.name, corners[seen], float(corners[:, :, 2].max()), foot)
 
-    def keeps_out(self, tool: Tool, z: float) -> Region:
+    def keeps_out(self, tool: Tool, z: float, within: Region) -> Region:
         """Return what the envelope of an upright cutter must stay out of, its tip at a height or higher, for all of the tool to keep
-        its room from the fixture."""
+        its room from the fixture; the same whatever region it is within."""
         found = []
         for above, radius in tool.rings():
             height = max(z + above - tolerance.FIXTURE_CLEARANCE, self.foot)
@@ -86,29 +87,61 @@ class PlanFixture:
         return self._areas[z]
 
 
+class KeepOut(Protocol):
+    """What keeps a cutter out of some of the plan: a fixture, or an area to avoid."""
+
+    @property
+    def name(self) -> str:
+        """What a finding calls it."""
+
+    def keeps_out(self, tool: Tool, z: float, within: Region) -> Region:
+        """Return what the envelope of an upright cutter must stay out of, its tip at a height; elsewhere it may be `within`."""
+
+    def changes(self, tool: Tool) -> list[float]:
+        """Return the heights of the tip over which it keeps out of less."""
+
+
+Notice = Callable[[str, str, Sequence[str], Tool, Floats, Sequence[str]], Finding]
+"""How it is told what is left out: of what, its size in words, by what, the tool, a position (3,) in the part's coordinates, and the names
+for `Finding.where`."""
+
+
 def off_fixtures(
     drive: PlaneDrive, tool: Tool, setup: Setup, fixtures: Sequence[PlanFixture]
 ) -> tuple[PlaneDrive, tuple[Finding, ...]]:
-    """Return a drive without what fixtures, as they stand in its setup, keep a cutter from, and a finding that names it.
+    """Return a drive without what fixtures, as they stand in its setup, keep a cutter from, and a finding that names it."""
+    return kept_out(drive, tool, setup, fixtures, kept_off)
+
+
+def kept_out(
+    drive: PlaneDrive, tool: Tool, setup: Setup, fixtures: Sequence[KeepOut], notice: Notice
+) -> tuple[PlaneDrive, tuple[Finding, ...]]:
+    """Return a drive without what a cutter is kept out of, and the finding that a notice makes of it.
 
     Levels are parted where less of the tool is beside a fixture: over a low clamp all is cut that was wanted.
     """
     levels = [part for level in drive.levels for part in _parted(level, fixtures, tool)]
     cut = [_cut(level, fixtures, tool) for level in levels]
     floors = tuple(
-        replace(f, region=f.region.minus(_keep_out(fixtures, tool, f.z, f.region)))
-        for f in drive.floors
+        replace(f, region=f.region.minus(_keep_out(fixtures, tool, f.z, f.region, within)))
+        for f, within in ((f, _boundary(levels, f.z)) for f in drive.floors)
     )
     lost = [
-        _lost(level, was, drive, tool, _keep_out(fixtures, tool, was.bottom, was.boundary))
+        _lost(level, was, drive, tool, _of_level(fixtures, tool, was))
         for level, was in zip(cut, levels, strict=True)
     ]
     kept = replace(drive, levels=tuple(cut), floors=tuple(f for f in floors if f.region))
-    return kept, _findings(drive, [one for one in lost if one], fixtures, tool, setup)
+    found = [one for one in lost if one]
+    return kept, _findings(drive, levels, found, fixtures, tool, setup, notice)
+
+
+def _boundary(levels: Sequence[DriveLevel], z: float) -> Region:
+    """Return where a cutter may be with its tip at a height: in the lowest level that reaches up to it, or the first."""
+    return next((v for v in levels if v.bottom <= z + tolerance.SEW), levels[-1]).boundary
 
 
 def kept_off(
-    what: str, size: str, by: Iterable[str], tool: Tool, at: Floats, where: Sequence[str]
+    what: str, size: str, by: Sequence[str], tool: Tool, at: Floats, where: Sequence[str]
 ) -> Finding:
     """Return the finding on what of something fixtures keep a cutter from, its size in words; `at` (3,) is there, in the part's
     coordinates."""
@@ -121,9 +154,9 @@ def kept_off(
     )
 
 
-def _parted(level: DriveLevel, fixtures: Sequence[PlanFixture], tool: Tool) -> list[DriveLevel]:
+def _parted(level: DriveLevel, fixtures: Sequence[KeepOut], tool: Tool) -> list[DriveLevel]:
     low, high = level.bottom + tolerance.SEW, level.top - tolerance.SEW
-    near = [f for f in fixtures if f.keeps_out(tool, level.bottom).intersect(level.boundary)]
+    near = [f for f in fixtures if _of_level((f,), tool, level)]
     heights = sorted({z for f in near for z in f.changes(tool) if low < z < high}, reverse=True)
     ends = [level.top, *heights, level.bottom]
     return [
@@ -131,16 +164,22 @@ def _parted(level: DriveLevel, fixtures: Sequence[PlanFixture], tool: Tool) -> l
     ]
 
 
-def _cut(level: DriveLevel, fixtures: Sequence[PlanFixture], tool: Tool) -> DriveLevel:
-    out = _keep_out(fixtures, tool, level.bottom, level.boundary)
+def _cut(level: DriveLevel, fixtures: Sequence[KeepOut], tool: Tool) -> DriveLevel:
+    out = _of_level(fixtures, tool, level)
     if not out:
         return level
     return replace(level, wanted=level.wanted.minus(out), boundary=level.boundary.minus(out))
 
 
-def _keep_out(fixtures: Sequence[PlanFixture], tool: Tool, z: float, near: Region) -> Region:
-    """Return what all fixtures keep a cutter out of at a height, those that don't come to a region left out."""
-    found = [f.keeps_out(tool, z) for f in fixtures]
+def _of_level(fixtures: Sequence[KeepOut], tool: Tool, level: DriveLevel) -> Region:
+    return _keep_out(fixtures, tool, level.bottom, level.boundary, level.boundary)
+
+
+def _keep_out(
+    fixtures: Sequence[KeepOut], tool: Tool, z: float, near: Region, within: Region
+) -> Region:
+    """Return what all fixtures keep a cutter out of that may be within a region at a height, those that don't come near left out."""
+    found = [f.keeps_out(tool, z, within) for f in fixtures]
     found = [r for r in found if r and r.intersect(near)]
     return union_all(found) if found else EMPTY_REGION
 
@@ -186,10 +225,12 @@ def _spread(curve: Curve) -> tuple[Floats, Floats, float]:
 
 def _findings(
     drive: PlaneDrive,
+    levels: Sequence[DriveLevel],
     lost: Sequence[KeepOutLevel],
-    fixtures: Sequence[PlanFixture],
+    fixtures: Sequence[KeepOut],
     tool: Tool,
     setup: Setup,
+    notice: Notice,
 ) -> tuple[Finding, ...]:
     """Return one finding on what is cut off a drive, none where nothing is."""
     if not lost:
@@ -198,7 +239,10 @@ def _findings(
     plan, walls = max(one.plan for one in lost), sum(one.walls for one in lost)
     sizes = [f"{plan:.0f} mm2 in plan"] if plan >= SMALLEST else []
     sizes += [f"{walls:.0f} mm2 of walls"] if walls >= SMALLEST else []
-    by = [f.name for f in fixtures if f.keeps_out(tool, float(most.at[2])).intersect(most.out)]
+    within = _boundary(levels, float(most.at[2]))
+    by = [
+        f.name for f in fixtures if f.keeps_out(tool, float(most.at[2]), within).intersect(most.out)
+    ]
     where = (drive.feature, *face_tags(drive.faces))
     at = setup.frame.to_world(most.at)
-    return (kept_off(drive.feature, " and ".join(sizes), by, tool, at, where),)
+    return (notice(drive.feature, " and ".join(sizes), by, tool, at, where),)

@@ -8,8 +8,9 @@ from dataclasses import replace
 from trunnion.findings import Finding, Fix
 
 ALTERNATIVES: Mapping[str, tuple[str, ...]] = {
-    "verify.collision-stock": ("clear_first", "tool", "approach", "drop"),
-    "verify.collision": ("tool", "approach", "drop"),
+    "verify.collision-stock": ("clear_first", "tool", "approach", "exclude", "drop"),
+    "verify.collision": ("tool", "approach", "exclude", "drop"),
+    "verify.fixture": ("exclude", "drop"),
     "verify.gouge": ("tolerance", "allowance", "smaller_tool", "drop"),
     "verify.rapid-in-stock": ("lift", "clear_first", "drop"),
     "verify.power": ("feed",),

@@ -49,6 +49,14 @@ class PathBuilder:
     def __len__(self) -> int:
         return len(self._motion)
 
+    def tops(self) -> list[float]:
+        """Return the heights over which the tip need not avoid some area any more."""
+        return (
+            []
+            if self.fixtures is None
+            else [float(z) for z in np.unique(self.fixtures.avoid[:, 4])]
+        )
+
     def heading(self) -> Floats:
         """Return the direction (2,) in the plane in which the last block ended; zeros when it went straight up or down."""
         if len(self) < 2:

@@ -1,4 +1,4 @@
-"""Fixtures in the way of links: how low the tip may go between two positions without any of the tool coming near one."""
+"""Fixtures and areas to avoid in the way of links: how low the tip may go between two positions without coming near one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.surface.drop_surface import DropSurface
+from trunnion.geometry.surface.drop_surface import DropSurface, tops_over
+from trunnion.model.keep_out import plan_boxes
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc
@@ -20,28 +21,36 @@ SPACING = 2.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FixtureSurface:
-    """The fixtures of a setup in its frame, ready for a tool that comes down on them."""
+    """The fixtures of a setup in its frame, ready for a tool that comes down on them (None: it has none), and the boxes (k, 5), as
+    `DropSurface.avoid` has them, that the tip stays out of."""
 
-    surface: DropSurface
+    surface: DropSurface | None
+    avoid: Floats
 
     @staticmethod
     def of(setup: Setup) -> FixtureSurface | None:
-        """Return the fixtures of a setup, None where it has none."""
+        """Return the fixtures of a setup and what is avoided in it, None where it has neither."""
         corners = [f.mesh.corners().reshape(-1, 3) for f in setup.fixtures]
         if not corners:
-            return None
+            return FixtureSurface(None, plan_boxes(setup.avoid)) if setup.avoid else None
         points = setup.frame.to_local(np.concatenate(corners))
-        return FixtureSurface(DropSurface.of(points, np.arange(len(points)).reshape(-1, 3)))
+        surface = DropSurface.of(points, np.arange(len(points)).reshape(-1, 3))
+        return FixtureSurface(surface, plan_boxes(setup.avoid))
 
     def lowest_tip(self, tool: Tool, start: Floats, end: Floats) -> float:
-        """Return how low the tip may go between two positions (2,), all of the tool its room away from fixtures; -inf beside them."""
+        """Return how low the tip may go between two positions (2,), all of the tool its room away from fixtures and the tip out of what is
+        avoided; -inf beside all."""
         way = _along(start, end)
-        wider = tolerance.FIXTURE_CLEARANCE + (0.5 * SPACING if len(way) > 1 else 0.0)
+        between = 0.5 * SPACING if len(way) > 1 else 0.0
+        top = float(tops_over(way, self.avoid, between).max())
+        if self.surface is None:
+            return top
+        wider = tolerance.FIXTURE_CLEARANCE + between
         tips = [
             self.surface.drop(way, level_disc(radius + wider), -math.inf).max() - above
             for above, radius in tool.rings()
         ]
-        return float(max(tips)) + tolerance.FIXTURE_CLEARANCE
+        return max(top, float(max(tips)) + tolerance.FIXTURE_CLEARANCE)
 
 
 def _along(start: Floats, end: Floats) -> Floats:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from trunnion import tolerance
 
@@ -16,6 +16,22 @@ def steps_down(top: float, bottom: float, step: float) -> tuple[float, ...]:
     """
     count = max(1, math.ceil((top - bottom) / step - tolerance.COINCIDENT))
     return (*(top - (top - bottom) * n / count for n in range(1, count)), bottom)
+
+
+def with_tops(heights: Sequence[float], top: float, tops: Iterable[float]) -> tuple[float, ...]:
+    """Return heights of passes, which go down from below `top`, with those of some tops between that are none of them: over what is avoided
+    a wall is cut down to its top.
+
+    >>> with_tops((-3.0, -6.0), 0.0, (-1.0, -3.0, -7.0))
+    (-1.0, -3.0, -6.0)
+    """
+    between = {
+        z
+        for z in tops
+        if heights[-1] < z < top - tolerance.SEW
+        and min(abs(z - h) for h in heights) > tolerance.SEW
+    }
+    return tuple(sorted({*heights, *between}, reverse=True)) if between else tuple(heights)
 
 
 def layers(

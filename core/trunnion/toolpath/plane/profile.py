@@ -35,7 +35,7 @@ from trunnion.toolpath.offsetting.contour import (
     cut_parts,
     length_out_of_reach,
 )
-from trunnion.toolpath.offsetting.levels import steps_down
+from trunnion.toolpath.offsetting.levels import steps_down, with_tops
 from trunnion.toolpath.offsetting.trimming import GRAZE, WORTH, PassTrimming
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -229,7 +229,8 @@ def _steps(
         for part in contour_parts(axis_region, guide.curve, distance)
         for a, b in pairwise(points_along(part, tool.radius)[1])
     ]
-    return steps_down(max([guide.top, *material_inside]), guide.bottom, step)
+    highest = max([guide.top, *material_inside])
+    return with_tops(steps_down(highest, guide.bottom, step), highest, builder.tops())
 
 
 def _planned(drive: PlaneDrive, builder: PathBuilder, findings: list[Finding]) -> Planned:

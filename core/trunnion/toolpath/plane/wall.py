@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -31,7 +31,7 @@ from trunnion.toolpath.offsetting.contour import (
     cut_parts,
     length_out_of_reach,
 )
-from trunnion.toolpath.offsetting.levels import fillet_steps, steps_down
+from trunnion.toolpath.offsetting.levels import fillet_steps, steps_down, with_tops
 from trunnion.toolpath.offsetting.rings import ring_tree, safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -89,7 +89,8 @@ def wall(
     axis_regions: dict[tuple[int, float, bool], AxisRegion] = {}
     for n, guide in enumerate(drive.walls):
         found = False
-        for z, extra in _heights(guide, tool, min(data.depth, tool.flute_length), settings.scallop):
+        step = min(data.depth, tool.flute_length)
+        for z, extra in _heights(guide, tool, step, settings.scallop, builder.tops()):
             progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
             boundary = _off_other_feet(level_at(drive, z).boundary, drive, guide, tool, z)
             distance = tool.radius + drive.wall_allowance + extra
@@ -200,9 +201,9 @@ def _clusters(positions: Floats, apart: float) -> list[tuple[Floats, Floats]]:
 
 
 def _heights(
-    guide: WallGuide, tool: Tool, step: float, scallop: float
+    guide: WallGuide, tool: Tool, step: float, scallop: float, tops: Sequence[float]
 ) -> list[tuple[float, float]]:
-    """Return (height, what is kept more than the radius from the wall) of all passes, downwards."""
+    """Return (height, what is kept more than the radius from the wall) of all passes, downwards, some at the tops of what is avoided."""
     foot = fillet_steps(guide.fillet, tool.corner_radius, scallop)
     straight = (
         steps_down(guide.top, guide.bottom + foot[0], step)
@@ -211,7 +212,8 @@ def _heights(
     )
     heights = [*straight, *(guide.bottom + t for t in foot[1 if straight else 0 :])]
     return [
-        (z, foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom)) for z in heights
+        (z, foot_clearance(guide.fillet, tool.corner_radius, z - guide.bottom))
+        for z in with_tops(heights, guide.top, tops)
     ]
 
 

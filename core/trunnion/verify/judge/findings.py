@@ -9,6 +9,7 @@ from trunnion.findings import Finding, Fix, error
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.motion.program import ProgramSection
 from trunnion.units import LONGEST_BLOCK, SECONDS_PER_MINUTE
+from trunnion.verify.judge.collision_boxes import Box
 from trunnion.verify.judge.locations import block_of, position_text
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
@@ -22,9 +23,10 @@ def setup_findings(proof: SetupProof, tags: Ints, settings: ProofSettings) -> li
     found = []
     for k, section in enumerate(proof.program.sections):
         rows = np.flatnonzero(proof.moves.section == k)
+        boxes = proof.collision_boxes[k]
         found += _gouges(proof, section, rows, tags, settings)
-        found += _collisions(proof, section, rows, tags, settings)
-        found += _fixtures(proof, section, rows, settings)
+        found += _collisions(proof, section, rows, tags, settings, boxes)
+        found += _fixtures(proof, section, rows, settings, boxes)
         found += _rapids(proof, section, rows)
         found += _endless(proof, section, rows)
     return found
@@ -58,7 +60,12 @@ def _gouges(
 
 
 def _collisions(
-    proof: SetupProof, section: ProgramSection, rows: Ints, tags: Ints, settings: ProofSettings
+    proof: SetupProof,
+    section: ProgramSection,
+    rows: Ints,
+    tags: Ints,
+    settings: ProofSettings,
+    boxes: tuple[Box, ...],
 ) -> list[Finding]:
     found = []
     depth, faces = proof.contact.depth[rows, 1], proof.contact.face[rows, 1]
@@ -78,6 +85,7 @@ def _collisions(
                     operation=section.operation,
                     reason="verify.collision",
                     amount=float(proof.contact.depth[row, 1]),
+                    boxes=boxes,
                 ),
             )
         )
@@ -97,6 +105,7 @@ def _collisions(
                     operation=section.operation,
                     reason="verify.collision-stock",
                     amount=float(body.max()),
+                    boxes=boxes,
                 ),
             )
         )
@@ -104,7 +113,11 @@ def _collisions(
 
 
 def _fixtures(
-    proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings
+    proof: SetupProof,
+    section: ProgramSection,
+    rows: Ints,
+    settings: ProofSettings,
+    boxes: tuple[Box, ...],
 ) -> list[Finding]:
     found = []
     depth, fixture_row = proof.contact.fixture_depth[rows], proof.contact.fixture[rows]
@@ -120,6 +133,13 @@ def _fixtures(
                 block_of(proof, section, row),
                 name,
                 remedy="move the fixture, or keep the tool off it",
+                fix=Fix(
+                    kind="exclude",
+                    operation=section.operation,
+                    reason="verify.fixture",
+                    amount=float(proof.contact.fixture_depth[row]),
+                    boxes=boxes,
+                ),
             )
         )
     return found

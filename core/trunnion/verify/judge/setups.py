@@ -18,6 +18,7 @@ from trunnion.model.tool import Tool
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import Contact, PartContact
 from trunnion.verify.finish.sweep import Sweep
+from trunnion.verify.judge.collision_boxes import Box, collision_boxes
 from trunnion.verify.judge.load import Load, load_of
 from trunnion.verify.machine.kinematics import AxisPositions, axis_positions
 from trunnion.verify.machine.times import MachineTimes, times_of
@@ -33,7 +34,7 @@ BUNDLES = {"z": ("z",), "xyz": ("x", "y", "z")}
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SetupProof:
     """What was measured in one setup on its machine: contact, stock, stands, times and load by move; residual (s,) mm on the samples, and
-    the move nearest to each (-1: none)."""
+    the move nearest to each (-1: none); `collision_boxes` for each section where its tip is while it collides."""
 
     program: Program
     machine: Machine
@@ -45,6 +46,7 @@ class SetupProof:
     load: Load
     residual: Floats
     nearest: Ints
+    collision_boxes: tuple[tuple[Box, ...], ...]
 
     def collides(self, allowed: float) -> Bools:
         """Return for each move whether shank or holder enter part or stock, or anything of the tool a fixture, deeper than allowed."""
@@ -80,6 +82,13 @@ def prove_setup(
         lambda _: load_of(moves, run, times.speed, program.sections, settings.cell, material),
         "Weighing the load",
     )
+    by_section = [np.flatnonzero(moves.section == k) for k in range(len(program.sections))]
+    boxes = progress.aside(
+        lambda own: tuple(
+            collision_boxes(moves, penetration, run, contact, rows, settings.tolerance)
+            for rows in own.each(by_section)
+        )
+    )
     return SetupProof(
         program=program,
         machine=machine,
@@ -91,6 +100,7 @@ def prove_setup(
         load=load,
         residual=residual,
         nearest=nearest,
+        collision_boxes=boxes,
     )
 
 

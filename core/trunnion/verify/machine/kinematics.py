@@ -75,7 +75,7 @@ def poses_of(moves: Moves) -> tuple[Ints, Floats, Floats]:
     tip = moves.start[move] + share[:, None] * (moves.end - moves.start)[move]
     arc = moves.sweep[move] != 0.0
     if arc.any():
-        tip[arc] = _on_arcs(moves, move[arc], share[arc])
+        tip[arc] = on_arcs(moves, move[arc], share[arc])
     return (
         move,
         tip,
@@ -156,7 +156,7 @@ def turned(vectors: Floats, axis: Axis, angle: Floats) -> Floats:
     )
 
 
-def _on_arcs(moves: Moves, move: Ints, share: Floats) -> Floats:
+def on_arcs(moves: Moves, move: Ints, share: Floats) -> Floats:
     """Return the tips at shares (k,) of arcs, which turn about the tool axis and may climb along it."""
     axis, centre = moves.start_axis[move], moves.centre[move]
     start, end = moves.start[move], moves.end[move]

@@ -34,12 +34,14 @@ def parted_near(
     around: float,
     longest: float = 0.0,
     progress: Progress = NO_PROGRESS,
+    everywhere: bool = False,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what of faces lies within `around` mm of certain places given tags of its own, and those tags.
 
     `over` says for positions (p, 3) with outward unit normals (p, 3) how much (p,) there is of what it is about: positions above nothing
     count. With `longest` mm the faces as a whole get triangles with such edges: what is not near hangs together as it did. Without it only
-    what is near gets finer ones, and triangles beside it no longer share all their corners with it.
+    what is near gets finer ones, and triangles beside it no longer share all their corners with it. With both, places are looked for
+    `everywhere` on these finer triangles: they may lie within one of the skin's.
     """
     rows = np.flatnonzero(skin.of(tags))
     position, normal, of = progress.aside(lambda _: _positions(skin, rows), "Parting the faces")
@@ -47,7 +49,7 @@ def parted_near(
     near = rows[
         progress.aside(lambda _: _with_those_near(position, of, certain, (1.0 + FILLED) * around))
     ]
-    if not len(near):
+    if not (len(near) or everywhere):
         return skin, ()
     if longest > 0.0:
         near = rows
@@ -62,6 +64,8 @@ def parted_near(
         )
     )
     above = over(fine.points, fine.normals)
+    if everywhere and not (above > 0.0).any():
+        return skin, ()
     inside, outside = progress.aside(lambda _: _cut(fine, _past_rim(fine, above, around)))
     kept = np.setdiff1d(np.arange(len(face)), near)
     points, normals, triangles, tag = (
