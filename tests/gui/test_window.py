@@ -217,7 +217,11 @@ def test_the_time_of_areas_stands_below_the_balance_of_operations(
         "op-03",
         "op-05",
         "op-07",
+        "pocket-01 in all",
+        "pocket-02 in all",
+        "pocket-03 in all",
     ]
+    assert areas.table.item(3, 1).text() == areas.table.item(0, 1).text()
     # The floor of 104 x 124 and four walls 24 high.
     assert areas.table.item(0, 1).text() == f"{104 * 124 + 2 * (104 + 124) * 24}"
     assert (
@@ -229,6 +233,9 @@ def test_the_time_of_areas_stands_below_the_balance_of_operations(
         LEFT,
         pos=areas.table.visualItemRect(areas.table.item(1, 0)).center(),
     )
+    assert window.document.selection.current.id == "op-05"
+    # A total is of no operation.
+    areas.table.cellClicked.emit(3, 0)
     assert window.document.selection.current.id == "op-05"
     window.document.run("toolpath", "Generate")
     qtbot.waitUntil(lambda: "measured on the toolpaths" in areas.gain.text(), timeout=20000)
