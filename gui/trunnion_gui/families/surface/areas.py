@@ -21,9 +21,7 @@ class AreasBlock(QWidget):
         super().__init__()
         self._finished: list[str] = []
         self._selection = document.selection
-        self.table = tables.table(
-            [tr("Area of"), "mm²", "mm²/s", tr("Time"), tr("By one cutter")], has_names=True
-        )
+        self.table = tables.table([tr("Area of"), "mm²", "mm²/s", tr("Time")], has_names=True)
         self.table.cellClicked.connect(lambda row, _: self._select(row))
         self.gain = QLabel()
         self.gain.setWordWrap(True)
@@ -46,11 +44,10 @@ class AreasBlock(QWidget):
                 amount(a.area, 1) if a.area else tr("rest"),
                 amount(a.rate, 2) if a.rate else "",
                 duration(a.seconds),
-                duration(a.seconds_alone),
             )
             for a in found.rows
         ]
-        tables.fill(self.table, rows, right=(1, 2, 3, 4))
+        tables.fill(self.table, rows, right=(1, 2, 3))
         tables.fit_height(self.table, _MOST_ROWS)
         words = tr(
             "{tool} alone, each area at its own rate for such places: {alone}; with their own cutters {own}: {gain} % more efficient, "

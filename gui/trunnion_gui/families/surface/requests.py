@@ -42,15 +42,14 @@ class Accuracy:
 
 @dataclass(frozen=True, slots=True)
 class AreaRow:
-    """An operation that finishes an area, or all that finish a feature (then `operation` is empty): mm2, mm2/s, s, and s by the smallest
-    cutter alone; a rest has no area and no rate."""
+    """An operation that finishes an area, or all that finish a feature (then `operation` is empty): mm2, mm2/s, s; a
+    rest has no area and no rate."""
 
     operation: str
     feature: str
     area: float
     rate: float
     seconds: float
-    seconds_alone: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,9 +157,8 @@ def estimate(
     if found is None:
         return None
     rows = tuple(
-        AreaRow(a.operation, a.feature, a.area, a.rate, a.seconds, a.seconds_alone)
-        for a in found.areas
-    ) + tuple(AreaRow("", t.feature, t.area, 0.0, t.seconds, t.seconds_alone) for t in found.totals)
+        AreaRow(a.operation, a.feature, a.area, a.rate, a.seconds) for a in found.areas
+    ) + tuple(AreaRow("", t.feature, t.area, 0.0, t.seconds) for t in found.totals)
     return EstimatedTimes(
         rows,
         found.seconds,
