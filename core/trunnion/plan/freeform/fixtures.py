@@ -19,10 +19,10 @@ from trunnion.model.fixture import Fixture
 from trunnion.model.keep_out import KeepOutBox, plan_boxes
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
+from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.partition import parted_near
-from trunnion.plan.freeform.finishing.rest import AROUND, MET, MOST
+from trunnion.plan.freeform.finishing.rest import AROUND, MET, MOST, upright_tips
 from trunnion.progress import NO_PROGRESS, Progress
 
 NO_FACE = 0
@@ -145,8 +145,7 @@ def _above(
     def over(position: Floats, normal: Floats) -> Floats:
         met = np.full(len(position), -np.inf)
         up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        at = position[up] + 2.0 * skin.bound * normal[up]
-        tip = tip_at(tool, at, normal[up], np.tile([0.0, 0.0, 1.0], (len(at), 1)))
+        tip = upright_tips(skin, position[up], normal[up], tool)
         met[up] = top(tip[:, :2]) - tip[:, 2]
         return met
 

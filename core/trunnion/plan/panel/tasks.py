@@ -485,10 +485,10 @@ def _wider_foot(state: PanelPlanState, feature: Feature) -> float:
     """Return by how much the widest fillet at a pocket's floors is wider than its own: where pockets run into one another, a sharp foot of
     one may stand for a filleted one of another."""
     feet = [state.space.fillet_at(feature, z) for z in state.space.floors_of(feature).values()]
-    return max(feet, default=0.0) - min(floor_fillet(feature), max(feet, default=0.0))
+    return max(max(feet, default=0.0) - floor_fillet(feature), 0.0)
 
 
-def _higher(bands: tuple[Band, ...], distance: float = 0.0) -> tuple[tuple[Region, Region], ...]:
+def _higher(bands: tuple[Band, ...], distance: float) -> tuple[tuple[Region, Region], ...]:
     """Return the areas at the floors above the lowest, kept off their walls: pockets that run into one another have passages of their own
     at each height."""
     return tuple(

@@ -189,8 +189,7 @@ def waterline(
 
 def _unreached_findings(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
     """Return a finding of the area that no steep position stands for."""
-    a, b, c = np.moveaxis(drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]], 1, 0)
-    area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() - steep.area.sum())
+    area = float(drive.skin.areas(drive.skin.of(drive.faces)).sum() - steep.area.sum())
     if area < SMALLEST_LEFTOVER:
         return ()
     return (

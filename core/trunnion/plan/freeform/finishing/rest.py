@@ -86,7 +86,7 @@ def _lifted_over(
     def over(position: Floats, normal: Floats) -> Floats:
         lift = np.full(len(position), np.inf)
         up = normal[:, 2] > 0.0
-        tip = _tips(skin, position[up], normal[up], tool)
+        tip = upright_tips(skin, position[up], normal[up], tool)
         top = skin.drop.drop(tip[:, :2], lower_side(tool), lowest, progress)
         lift[up] = top - tip[:, 2] - limit
         return lift
@@ -141,7 +141,7 @@ def _met_over(
     def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
         met = np.full(len(position), -np.inf)
         up = normal[:, 2] > -math.sin(tolerance.ANGLE)
-        tip = _tips(skin, position[up], normal[up], tool)
+        tip = upright_tips(skin, position[up], normal[up], tool)
         # How high the tip must be for all of the tool to be above what stands beside it.
         free = np.full(len(tip), -np.inf)
         for surface, around, bodies in ((skin.drop, 0.0, wider), (overhang, thickness, whole)):
@@ -171,7 +171,7 @@ def overhanging(skin: Skin) -> DropSurface | None:
     return DropSurface.of(skin.points, skin.triangles[hangs]) if hangs.any() else None
 
 
-def _tips(skin: Skin, position: Floats, normal: Floats, tool: Tool) -> Floats:
+def upright_tips(skin: Skin, position: Floats, normal: Floats, tool: Tool) -> Floats:
     """Return the tips (p, 3) of an upright cutter that touches at positions (p, 3) with normals (p, 3)."""
     at = position + 2.0 * skin.bound * normal
     return tip_at(tool, at, normal, np.tile([0.0, 0.0, 1.0], (len(at), 1)))
