@@ -310,6 +310,19 @@ def test_a_leaning_rapid_through_stock_is_as_deep_as_it_goes(depth):
     assert run.rapid_position[2, 2] == approx(20.0, abs=depth)
 
 
+@pytest.mark.parametrize("left", [0.0004, 0.009, 0.02, 0.3])
+def test_a_rapid_through_a_film_is_in_stock_where_the_film_is_thicker_than_a_rapid_may_be_deep(
+    left,
+):
+    over = program_section(flat(60.0)(), [(-60.0, 16.0, left), (60.0, 16.0, left)])
+    axis = np.array([0.0, math.sin(0.4), math.cos(0.4)])
+    tips = [(-60.0, 16.0, -8.0), (60.0, 16.0, -8.0)]
+    through = with_rapids(leaning_section(flat(10.0)(), tips, [axis] * 2))
+    moves = moves_of([over, through])
+    run = run_stock(whole(0.5), moves, WORLD, Sweep.of(moves, 2.0))
+    assert (run.rapid_depth.max() > tolerance.RAPID_DEPTH) == (left > tolerance.RAPID_DEPTH)
+
+
 def with_rapids(section):
     n = len(section.path)
     return replace(section, path=replace(section.path, motion=np.zeros(n, int), feed=np.zeros(n)))

@@ -780,15 +780,16 @@ def _neighbour_material(
     j: int,
     a: float,
     b: float,
+    thick: float,
 ) -> float:
     """Return a position (w) between a and b where a ray of a cell, or of one beside it in the tile, has
-    material; NaN when none has."""
+    material thicker than `thick`; NaN when none has."""
     for y in range(max(j - 1, row), min(j + 2, end_row)):
         for x in range(max(i - 1, 0), min(i + 2, columns)):
             cell = y * columns + x
             for k in range(count[cell]):
                 c, d = max(a, low[cell, k]), min(b, high[cell, k])
-                if d - c > NOISE:
+                if d - c > NOISE and high[cell, k] - low[cell, k] > thick:
                     return 0.5 * (c + d)
     return np.nan
 
@@ -890,7 +891,9 @@ def _graze_candidates(
                 b, _t = _newton_entry(arcs, first, last, np.inf, ray, box[5], box[2])
                 if math.isnan(b) or b <= a:
                     continue
-                w = _neighbour_material(count, low, high, columns, row, end_row, i, j, a, b)
+                w = _neighbour_material(
+                    count, low, high, columns, row, end_row, i, j, a, b, ray[SMALLER]
+                )
                 if not math.isnan(w):
                     deep = _swept_depth(arcs, first, last, np.inf, ray, w)[0] + ray[SMALLER]
                     quarter = 2 * (2 * y // fine) + 2 * x // fine
@@ -961,7 +964,8 @@ def tridexel_cut_tile(
     resume (6,): move, span, piece, row and column to begin with, and whether that move has been
     looked at; changed. removed (n,) gets the length (mm) that is gone, depth (n,) and position (n, 3)
     how deep a rapid's cutter is in material and where (u, v, w), body (n,) how deep what doesn't
-    cut is. motion (n, 16): start, end, both axes, centre and sweep as `Moves` has them; rings, flute,
+    cut is; neither is deeper than the material is thick along a ray. motion (n, 16): start, end, both
+    axes, centre and sweep as `Moves` has them; rings, flute,
     circle, probe_start (n + 1,), counted and seen: see `kernels/stock/engagement.py`; without probes
     nothing is looked at. fine: rays along each side of a cell where a rapid may go deeper than
     `allowed` in between, 0 for none; grazed (r, 4) gets such positions (u, v, w) and depths,
@@ -1116,11 +1120,18 @@ def tridexel_cut_tile(
                         for k in range(count[cell]):
                             a, b = max(low[cell, k], box[2]), min(high[cell, k], box[5])
                             best = depth[n] if cuts else body[n]
-                            if b <= a or _depth_bound(arcs, first, end, np.inf, ray, a, b) <= best:
+                            # What is thin is nowhere deeper in a body than it is thick.
+                            thick = high[cell, k] - low[cell, k]
+                            if (
+                                b <= a
+                                or thick <= best
+                                or _depth_bound(arcs, first, end, np.inf, ray, a, b) <= best
+                            ):
                                 continue
                             deepest, w = _max_depth_turning(
                                 arcs, first, end, np.inf, ray, a, b, best
                             )
+                            deepest = min(deepest, thick)
                             if deepest > best and cuts:
                                 depth[n], position[n, 0], position[n, 1], position[n, 2] = (
                                     deepest,
