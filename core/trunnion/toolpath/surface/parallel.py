@@ -298,8 +298,7 @@ def _passes(
     area = DropSurface.of(drive.skin.points, drive.skin.triangles[on_area])
     strip = OverrunStrip.of(drive.skin, drive.faces, planes.beyond)
 
-    def contacted(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
-        plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
+    def touched(plan: Floats, share: Progress) -> tuple[Bools, Bools, Ints]:
         z, facet, contact = drive.skin.drop.contacts(plan, pieces, lowest, share)
         found = (facet >= 0) & on_area[np.maximum(facet, 0)]
         # On the rim either of two faces may be named.
@@ -307,9 +306,14 @@ def _passes(
         found[other] = (
             area.drop(plan[other], pieces, lowest, share) >= z[other] - tolerance.COINCIDENT
         )
+        return found, np.asarray(~found & strip.has(contact, facet)), facet
+
+    def contacted(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
+        plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
+        found, others, _ = touched(plan, share)
         # Past the area the cutter rolls over its rim.
         within = (run >= planes.reach[plane, 0]) & (run <= planes.reach[plane, 1])
-        return np.asarray(found & within), np.asarray(~found & strip.has(contact, facet))
+        return np.asarray(found & within), others
 
     def has_contact(plane: Ints, run: Floats, share: Progress) -> Bools:
         area, others = contacted(plane, run, share)
@@ -337,13 +341,28 @@ def _passes(
     tips = follow(drive.skin.drop, pieces, lines, settings.chord, lowest, progress.part(0.4, 0.9))
     count = np.cumsum([len(t) for t in tips])[:-1]
     plan = np.concatenate([np.zeros((0, 2)), *(t[:, :2] for t in tips)])
-    facet = drive.skin.drop.contacts(plan, pieces, lowest, progress.part(0.9, 1.0))[1]
+    found, others, facet = touched(plan, progress.part(0.9, 1.0))
     normals = np.split(_facing(drive.skin, facet), count)
     lift = drive.allowance * UPRIGHT
     return [
-        Pass(tip=tip + lift, axis=np.broadcast_to(UPRIGHT, tip.shape), normal=normal)
-        for tip, normal in zip(tips, normals, strict=True)
+        Pass(
+            tip=_level_past(tip, kept, planes.along) + lift,
+            axis=np.broadcast_to(UPRIGHT, tip.shape),
+            normal=normal,
+        )
+        for tip, kept, normal in zip(tips, np.split(found | others, count), normals, strict=True)
     ]
+
+
+def _level_past(tip: Floats, kept: Bools, along: Floats) -> Floats:
+    """Return tips (n, 3) of a pass with those that touch neither the area nor the strip past it no lower than the straight way between
+    those that do (n,), and level past the last: over a rim that hangs free the cutter would fall to whatever lies below."""
+    if kept.all() or not kept.any():
+        return tip
+    run = tip[:, :2] @ along
+    straight = np.interp(run, run[kept], tip[kept, 2])
+    height = np.where(kept, tip[:, 2], np.maximum(tip[:, 2], straight))
+    return np.column_stack([tip[:, :2], height])
 
 
 def _facing(skin: Skin, facet: Ints) -> Floats:

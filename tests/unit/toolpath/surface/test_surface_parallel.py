@@ -199,3 +199,14 @@ def test_runs_that_go_on_past_what_is_looked_at_end_there():
         and runs[1, 0] == pytest.approx(3.0, abs=0.5 / 2**7)
         and runs[1, 1] > 5.9
     )
+
+
+def test_over_a_rim_that_hangs_free_passes_go_on_level() -> None:
+    # A blade's round edge, 78 degrees to either side, with nothing beside it.
+    radius, rim = 1.6, 1.6 * math.sin(math.radians(78.0))
+    edge = grid(lambda x, y: np.sqrt(radius**2 - x**2), n=40, low=(-rim, 0.0), high=(rim, 10.0))
+    made, _ = planned(edge, direction="angle", angle=0.0, steepest=85.0)
+    tips = made.path.position[made.path.motion != Motion.RAPID]
+    # Rolled right over the rim the ball's middle is as high as that.
+    assert tips[:, 2].min() > radius * math.cos(math.radians(78.0)) - BALL.radius
+    assert np.ptp(tips[:, 0]) > 2.0 * (radius + BALL.radius) * math.sin(math.radians(78.0))
