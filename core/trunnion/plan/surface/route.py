@@ -192,6 +192,7 @@ def _plan(state: SurfacePlanState, progress: Progress) -> None:
                 seen,
                 _finishers(state),
                 state.route.reach_clearance,
+                lambda there: _roughing_reach(state, there),
                 progress.part(0.85, 0.98),
             ),
             1,
@@ -245,8 +246,7 @@ def _rough(
 ) -> None:
     """Plan roughing by layers with a large cutter from a direction, and with falling sizes what those before left: down to about the size
     of the smallest finishing cutter, so that this one finds little, and on into hollows that are too narrow for that size."""
-    size, deep = float((space.high - space.low)[:2].min()), float(space.high[2]) - bottom
-    most = min(state.route.largest, ROUGH_SHARE * size)
+    deep, most = float(space.high[2]) - bottom, _largest_rougher(state, space)
     tool = _rougher(state, most, deep, state.settings.rough_cutter)
     if tool is None:
         state.findings.append(
@@ -303,11 +303,7 @@ def _rougher(state: SurfacePlanState, most: float, deep: float, name: str) -> To
     if name:
         return named(state.shop, name)
     fits = [
-        t
-        for t in state.cutters("rough")
-        if t.form in ("flat", "bull")
-        and t.diameter <= most
-        and depth_reached(t) >= deep + state.route.reach_clearance
+        t for t in _roughers(state, most) if depth_reached(t) >= deep + state.route.reach_clearance
     ]
     return max(
         fits,
@@ -319,6 +315,24 @@ def _rougher(state: SurfacePlanState, most: float, deep: float, name: str) -> To
         ),
         default=None,
     )
+
+
+def _roughers(state: SurfacePlanState, most: float) -> list[Tool]:
+    return [t for t in state.cutters("rough") if t.form in ("flat", "bull") and t.diameter <= most]
+
+
+def _largest_rougher(state: SurfacePlanState, space: SurfaceSpace) -> float:
+    """Return the largest diameter in mm of a roughing cutter from a direction."""
+    size = float((space.high - space.low)[:2].min())
+    return min(state.route.largest, ROUGH_SHARE * size)
+
+
+def _roughing_reach(state: SurfacePlanState, space: SurfaceSpace) -> float:
+    """Return how deep in mm under the blank's top roughing comes from a direction."""
+    deepest = max(
+        (depth_reached(t) for t in _roughers(state, _largest_rougher(state, space))), default=0.0
+    )
+    return deepest - state.route.reach_clearance
 
 
 def _add_rough(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
@@ -50,9 +50,14 @@ def sides_for(
     hidden: AreaSamples,
     tools: Sequence[Tool],
     clearance: float,
+    depth: Callable[[SurfaceSpace], float],
     progress: Progress,
 ) -> list[RoughingDirection]:
-    """Return the directions that see hidden positions best, each the one that sees most of what those before it don't."""
+    """Return the directions that see hidden positions best, each the one that sees most of what those before it don't.
+
+    `depth` returns how deep in mm under the blank's top a roughing cutter comes in a space: what lies deeper is not seen from there.
+    Each position is left to the one of these directions that it lies least deep from, so none goes deeper than it must.
+    """
     probe = max(
         (t for t in tools if t.diameter <= PROBE),
         key=lambda t: (t.diameter, t.reach, t.name),
@@ -61,7 +66,7 @@ def sides_for(
     directions = [d for d in _directions() if bool(around.holds(np.array([d]))[0])]
     if probe is None or not directions:
         return []
-    seen, spaces, heights, facing = [], [], [], []
+    seen, spaces, heights, facing, depths = [], [], [], [], []
     for n, direction in enumerate(directions):
         progress.at(n / len(directions), "looking from the sides")
         there = space.seen_from(setup, direction)
@@ -73,35 +78,46 @@ def sides_for(
             area=hidden.area,
             normal=there.frame.local_direction(space.frame.world_direction(hidden.normal)),
         )
-        seen.append(reached(there, local, probe, clearance))
+        below = float(there.high[2]) - local.point[:, 2]
+        seen.append(reached(there, local, probe, clearance) & (below <= depth(there)))
+        depths.append(below)
         spaces.append(there)
         heights.append(local.point[:, 2])
         facing.append(local.normal[:, 2] > FACING)
     tilted = np.array([d[2] > math.sin(tolerance.ANGLE) for d in directions])
+    rows = selected(np.array(seen), tilted)
     found = []
-    for row, own in selected(np.array(seen), tilted):
+    for row, own in zip(
+        rows, shared_out(np.array(seen)[rows], np.array(depths)[rows]), strict=True
+    ):
         faces = own & facing[row]
-        found.append(
-            RoughingDirection(
-                space=spaces[row],
-                bottom=float(heights[row][faces if faces.any() else own].min()),
-            )
-        )
+        if own.any():
+            lowest = float(heights[row][faces if faces.any() else own].min())
+            found.append(RoughingDirection(space=spaces[row], bottom=lowest))
     return found
 
 
-def selected(seen: Bools, tilted: Bools) -> list[tuple[int, Bools]]:
-    """Return the rows of directions that see most of what those before them don't, and what (k,) that is, from what each sees (d, k) and
-    which are tilted (d,)."""
+def selected(seen: Bools, tilted: Bools) -> list[int]:
+    """Return the rows of directions that see most of what those before them don't, from what each sees (d, k) and which are tilted
+    (d,)."""
     found, remaining = [], np.ones(seen.shape[1], dtype=bool)
     while remaining.any():
         gained = (seen & remaining).sum(axis=1)
         row = int(np.argmax(gained - EVEN * len(remaining) * tilted))
         if gained[row] <= WORTH * len(remaining):
             break
-        found.append((row, seen[row] & remaining))
+        found.append(row)
         remaining &= ~seen[row]
     return found
+
+
+def shared_out(seen: Bools, depths: Floats) -> Bools:
+    """Return which positions (d, k) are each direction's own: of those that see a position (d, k), the one that it lies least deep (d, k)
+    from."""
+    least = np.where(seen, depths, np.inf)
+    if not len(least):
+        return seen
+    return np.asarray(seen & (np.arange(len(seen))[:, None] == least.argmin(axis=0)))
 
 
 def _directions() -> list[Direction]:
