@@ -7,9 +7,10 @@ import pytest
 
 from milling import SETUP, box_blank, cutting, mill
 from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.curve_parts import parts_where
 from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark, Motion
-from trunnion.toolpath.axis_region import AxisRegion, parts_where
+from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import step_aside, travel
 from trunnion.toolpath.offsetting.lead import fitting_lead, lead_in

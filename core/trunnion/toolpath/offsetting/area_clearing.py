@@ -13,10 +13,11 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.curve_parts import parts_near
 from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark
 from trunnion.progress import Progress
-from trunnion.toolpath.axis_region import AxisRegion, parts_near
+from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import descent, is_free, step_aside, top_under, travel
 from trunnion.toolpath.motion.order import nearest_first

@@ -10,7 +10,8 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
-from trunnion.toolpath.axis_region import AxisRegion, parts_where, points_along
+from trunnion.geometry.plane.curve_parts import parts_where, points_along
+from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.link import is_off, may_plunge, step_aside, top_under, travel
 from trunnion.toolpath.motion.order import nearest_first

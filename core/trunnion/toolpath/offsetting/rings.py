@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.curve_parts import points_along
 from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
-from trunnion.toolpath.axis_region import points_along
 
 SAFE_SHARE = 0.95
 """Of the flat end's radius: the widest step; the rest is for the machine."""

@@ -12,8 +12,8 @@ import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.curve_parts import points_along
 from trunnion.geometry.plane.region import Region
-from trunnion.toolpath.axis_region import points_along
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import SECONDS_PER_MINUTE

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from trunnion import tolerance
 from trunnion.findings import Finding, info, warning
 from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.curve_parts import parts_where
 from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -16,7 +17,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import settings
-from trunnion.toolpath.axis_region import AxisRegion, is_closed, parts_where
+from trunnion.toolpath.axis_region import AxisRegion, is_closed
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety

@@ -10,6 +10,7 @@ from trunnion import tolerance
 from trunnion.findings import error, info
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.curve_parts import parts_where, points_along
 from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
@@ -17,7 +18,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.axis_region import AxisRegion, level_at, parts_where, points_along
+from trunnion.toolpath.axis_region import AxisRegion, level_at
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion import choices
 from trunnion.toolpath.motion.builder import PathBuilder

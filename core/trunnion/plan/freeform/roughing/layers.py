@@ -1,4 +1,4 @@
-"""Plane drives of parts of curved surfaces: layers from how high the part is, and outlines of upright walls from its sections."""
+"""Plane drives of parts of curved surfaces: layers from how high the part is, and lands and outlines of their own modules."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
+from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import StockHeights
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, number
 from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
+from trunnion.plan.freeform.outline import outline_drive
 from trunnion.plan.freeform.roughing.heights import (
     HeightMap,
     cell_over,
@@ -22,7 +23,7 @@ from trunnion.plan.freeform.roughing.heights import (
     wall_gap,
 )
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
+from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 from trunnion.progress import Progress
 
 STRAIGHT = 0.5
@@ -57,7 +58,7 @@ def plane_drive_of(
     if operation.kind == "rough":
         return _layers(operation, space, stock, progress)
     if operation.kind == "profile_finish":
-        return _outline(operation, space)
+        return outline_drive(operation, space)
     raise Refused(
         f"{operation.id}: parts of curved surfaces have no drive for plane operations of kind {operation.kind}"
     )
@@ -175,41 +176,3 @@ def _stock_over(stock: StockHeights, z: float, above: float) -> Region:
     grid = np.pad(np.where(higher, most - 1.0, most + 1.0), 1, constant_values=most + 1.0)
     found = region_below(grid, stock.corner - 0.5 * stock.cell, stock.cell, most, LEAST_STRAIGHT)
     return found.opened(RIM * stock.cell)
-
-
-def _outline(operation: Operation, space: SurfaceSpace) -> PlaneDrive:
-    """Return the outline that the part's sections make from a bottom up, as walls from there to the highest of the operation's faces."""
-    rows = np.isin(space.skin.face, operation.faces)
-    z = space.skin.points[space.skin.triangles[rows], 2]
-    bottom, top, margin = float(z.min()), float(z.max()), tolerance.OFF_PLANE
-    highest = float(space.skin.points[:, 2].max())
-    heights = [
-        bottom + margin,
-        0.5 * (bottom + top),
-        top - margin,
-        *np.linspace(top, highest, 4)[1:-1],
-        highest - margin,
-    ]
-    sections = [
-        space.part.section(space.frame, h).holes_filled() for h in heights if bottom < h < highest
-    ]
-    outline = union_all([s for s in sections if s]).holes_filled()
-    around = space.around()
-    blank = space.blank_area()
-    level = DriveLevel(
-        top=top, bottom=bottom, wanted=blank.minus(outline), boundary=around.minus(outline)
-    )
-    walls = tuple(
-        WallGuide(
-            curve=piece.outer.reversed(), top=top, bottom=bottom, fillet=0.0, faces=operation.faces
-        )
-        for piece in outline.pieces
-    )
-    return PlaneDrive(
-        feature=operation.feature,
-        kind=operation.kind,
-        levels=(level,),
-        walls=walls,
-        stock_top=top,
-        faces=operation.faces,
-    )
