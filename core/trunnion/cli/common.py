@@ -177,6 +177,16 @@ def with_manual_edits(options: argparse.Namespace, engine: Engine, session: Sess
     return session
 
 
+def dropped_words(tags: Sequence[int]) -> str:
+    """Return the patches that are in no group in words, each by its number.
+
+    >>> dropped_words([12]), dropped_words([3, 9])
+    ('1 dropped patch (face 12)', '2 dropped patches (faces 3, 9)')
+    """
+    patches, faces = ("patch", "face") if len(tags) == 1 else ("patches", "faces")
+    return f"{len(tags)} dropped {patches} ({faces} {', '.join(map(str, tags))})"
+
+
 def listed(words: str) -> tuple[str, ...]:
     """Return the words that commas part.
 

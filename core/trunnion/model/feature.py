@@ -120,6 +120,12 @@ class Recognition:
         """Return the features of some kinds, in order."""
         return tuple(f for f in self.features if f.kind in kinds)
 
+    @property
+    def dropped(self) -> tuple[int, ...]:
+        """The tags that recognition itself put in no feature; faces of features that a person deleted are not among them."""
+        deleted = {tag for tags in self.removed for tag in tags}
+        return tuple(tag for tag in self.unexplained if tag not in deleted)
+
     def __iter__(self) -> Iterator[Feature]:
         return iter(self.features)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -276,6 +277,46 @@ def test_the_command_line_cuts_regroups_exports_and_measures(file, tmp_path, cap
     told = json.loads(capsys.readouterr().out)
     assert [row["points_on_edge"] for row in told["size_errors"]] == [0, 3, -1]
     assert told["boundary_error"]["mm"] < 1e-3
+
+
+def dropping(engine, opened):
+    """Return the bowl's session with its hollow below the smallest feature size."""
+    return engine.run(
+        engine.with_choices(opened, {"recognize.surface.smallest": 25.0}), "recognize"
+    )
+
+
+def test_dropped_patches_are_in_no_export_but_their_own(engine, opened):
+    engine.context_of(opened)
+    session = dropping(engine, opened)
+    hollow = hollow_of(engine, session)
+    assert session.recognition.dropped == (hollow,)
+    assert tags_of(session, ["remaining"]) == tuple(sorted(set(range(1, 8)) - {hollow}))
+    assert tags_of(session, ["dropped"]) == (hollow,)
+    grouped = with_moved(engine, session, [hollow])
+    assert grouped.recognition.dropped == () and hollow in tags_of(grouped, ["remaining"])
+
+
+def test_faces_of_a_deleted_group_are_not_dropped(engine, found):
+    gone = found.recognition.features[0]
+    session = replace(found, recognition=found.recognition.without(gone.id))
+    assert session.recognition.unexplained == gone.tags and session.recognition.dropped == ()
+    assert set(gone.tags) <= set(tags_of(session, ["remaining"]))
+
+
+def test_the_command_line_names_what_is_dropped(file, tmp_path, capsys):
+    hollow = bowl(40.0, 30.0, 12.0, 10.0).graph().surface.index("sphere") + 1
+    words = [str(file), "--set", "family=surface", "--set", "recognize.surface.smallest=25"]
+    assert main(["recognize", *words]) == DONE
+    assert f"1 dropped patch (face {hollow})" in capsys.readouterr().out
+    rest = ["export", *words, "--groups", "remaining", "--out", str(tmp_path / "rest.igs")]
+    assert main(rest) == DONE
+    said = capsys.readouterr().out
+    assert "6 faces written" in said and f"1 dropped patch (face {hollow}): not written" in said
+    assert main([*rest, "--json"]) == DONE
+    told = json.loads(capsys.readouterr().out)
+    assert told["dropped"] == [hollow] and hollow not in told["faces"]
+    assert len(read_part(tmp_path / "rest.igs").tags) == 6
 
 
 @pytest.mark.parametrize(

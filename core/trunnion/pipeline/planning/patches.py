@@ -22,8 +22,8 @@ from trunnion.recognize.contract import exclusive_kinds, sharing_families
 if TYPE_CHECKING:
     from trunnion.pipeline.engine import Engine
 
-LOCAL, REMAINING = "local", "remaining"
-"""What may be exported beside groups by their id: all local features, and all other faces of the part."""
+LOCAL, REMAINING, DROPPED = "local", "remaining", "dropped"
+"""What may be exported beside groups by their id: all local features, all other faces but what recognition dropped, and that."""
 
 
 def with_cut(
@@ -87,16 +87,17 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
 
 
 def tags_of(session: Session, what: Sequence[str]) -> tuple[int, ...]:
-    """Return the tags that words mean: `local`, `remaining`, or ids of groups. Raises `BadInput` when they mean no face."""
+    """Return the tags that words mean: `local`, `remaining`, `dropped`, or ids of groups. Raises `BadInput` when they mean no face."""
     found = _recognition(session)
     tags: set[int] = set()
     for word in what:
         if word == LOCAL:
             tags.update(_local(found))
         elif word == REMAINING:
-            tags.update(
-                {*found.unexplained, *(t for f in found.features for t in f.tags)} - _local(found)
-            )
+            explained = {t for f in found.features for t in f.tags}
+            tags.update({*found.unexplained, *explained} - _local(found) - set(dropped(found)))
+        elif word == DROPPED:
+            tags.update(dropped(found))
         else:
             tags.update(_group(found, word).tags)
     if not what:
@@ -106,6 +107,11 @@ def tags_of(session: Session, what: Sequence[str]) -> tuple[int, ...]:
             f"{' and '.join(what)}: no face of the part belongs to it; name other groups, or call some local features"
         )
     return tuple(sorted(tags))
+
+
+def dropped(found: Recognition) -> tuple[int, ...]:
+    """Return the tags of the patches that are in no group because they are too narrow or too small; none of families without groups."""
+    return found.dropped if exclusive_kinds(found.family) else ()
 
 
 def export(engine: Engine, session: Session, what: Sequence[str], path: str | Path) -> int:
