@@ -11,6 +11,7 @@ import numpy as np
 from trunnion.findings import Finding
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.settings import added
 
 Size = float | int | bool | str | tuple[float, ...]
 
@@ -102,7 +103,8 @@ class Recognition:
     `face_area` (n_faces,) float64, mm2, is the area of every face of the part in the order of the tags; empty where it is not known, as in
     features read from XML. `unexplained_share` is the unexplained faces' share of it. `taken_for` is the kind of part it was taken for;
     `doubt`, when not empty, the line that the steps after recognition refuse with until a person has chosen a family. `removed` has the
-    faces of each feature that a person deleted: a re-run does not take up again what claims most of them.
+    faces of each feature that a person deleted: a re-run does not take up again what claims most of them. `retired` are the names of
+    features that a person emptied or deleted: no other feature gets one of them.
     """
 
     family: str
@@ -115,6 +117,7 @@ class Recognition:
     removed: tuple[tuple[int, ...], ...] = ()
     taken_for: TakenFor | None = None
     doubt: str = ""
+    retired: tuple[str, ...] = added((), written=False)
 
     def of_kind(self, *kinds: str) -> tuple[Feature, ...]:
         """Return the features of some kinds, in order."""
@@ -142,7 +145,10 @@ class Recognition:
         kept = tuple(f for f in self.features if f.id != id)
         loose = {*self.unexplained, *gone.tags} - {tag for f in kept for tag in f.tags}
         return replace(
-            self.with_unexplained(loose), features=kept, removed=(*self.removed, gone.tags)
+            self.with_unexplained(loose),
+            features=kept,
+            removed=(*self.removed, gone.tags),
+            retired=(*self.retired, id),
         )
 
     def with_unexplained(self, tags: Iterable[int]) -> Recognition:

@@ -110,6 +110,47 @@ def test_groups_found_again_take_free_names_beside_those_made_by_hand(engine, fo
     assert shared_out(again) == list(range(1, 8))
 
 
+def emptied(engine, found, *faces):
+    """Return the session after faces went to a new group and on to the first one, and the name that group had."""
+    made = with_moved(engine, found, faces)
+    name = group_of(made, faces[0])
+    return with_moved(engine, made, faces, made.recognition.features[0].id), name
+
+
+def test_the_name_of_an_emptied_group_is_not_given_again(engine, found):
+    hollow = hollow_of(engine, found)
+    session, name = emptied(engine, found, hollow)
+    assert name not in {f.id for f in session.recognition}
+    again = with_moved(engine, session, [hollow])
+    assert group_of(again, hollow) not in {name, *(f.id for f in found.recognition)}
+
+
+def test_names_that_were_given_survive_a_project_file(engine, found, tmp_path):
+    hollow = hollow_of(engine, found)
+    session, name = emptied(engine, found, hollow)
+    engine.save(session, tmp_path / "bowl.trunnion")
+    other = Engine()
+    opened = other.open(tmp_path / "bowl.trunnion")
+    assert name in opened.recognition.retired
+    assert group_of(with_moved(other, opened, [hollow]), hollow) != name
+
+
+def test_recognition_gives_no_name_again_that_an_emptied_group_had(engine, found):
+    first, *_, last = found.recognition.features
+    moved = with_moved(engine, found, last.tags, first.id)
+    again = engine.run(engine.with_choices(moved, {"grouping": "aligned"}), "recognize")
+    assert last.id not in {f.id for f in again.recognition}
+    assert shared_out(again) == list(range(1, 8))
+    hollow = hollow_of(engine, again)
+    assert group_of(with_moved(engine, again, [hollow]), hollow) != last.id
+
+
+def test_the_name_of_a_deleted_group_is_not_given_again(engine, found):
+    gone, kept, *_ = found.recognition.features
+    session = replace(found, recognition=found.recognition.without(gone.id))
+    assert group_of(with_moved(engine, session, kept.tags[:1]), kept.tags[0]) != gone.id
+
+
 def test_a_cut_makes_recognition_stale_and_its_pieces_are_found_as_patches(engine, found):
     hollow = hollow_of(engine, found)
     cut = with_cut(engine, found, plane_cut(hollow, (20.0, 15.0, 8.0), (0.0, 0.0, 1.0)))

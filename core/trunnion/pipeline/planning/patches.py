@@ -61,7 +61,9 @@ def with_local(session: Session, ids: Iterable[str], value: bool) -> Session:
 def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: str = "") -> Session:
     """Return the session with faces moved by hand to a group, or to a new one that is as local as the first face's was.
 
-    All groups that change are measured anew, those that lose their last face go. Raises `BadInput` for a face that the part doesn't have
+    All groups that change are measured anew, those that lose their last face go, and so do their names: no other group gets them.
+
+    Raises `BadInput` for a face that the part doesn't have
     or an id that no group has.
     """
     found, moved = _recognition(session), set(faces)
@@ -82,7 +84,12 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
     features = tuple(into if f.id == into.id else f for f in features if f.faces)
     features = features if into in features else (*features, into)
     loose = tuple(t for t in found.unexplained if t not in moved)
-    after = replace(found.with_unexplained(loose), features=features)
+    there = {f.id for f in features}
+    after = replace(
+        found.with_unexplained(loose),
+        features=features,
+        retired=(*found.retired, *(f.id for f in found.features if f.id not in there)),
+    )
     return measured_anew(replace(session, recognition=after), engine.context_of(session))
 
 
@@ -160,7 +167,7 @@ def _new_group(found: Recognition, face: int) -> Feature:
     kind = exclusive_kinds(found.family)[0]
     local = from_group is not None and bool(from_group.attributes.get("local"))
     return Feature(
-        id=free_id(kind, {f.id for f in found.features}),
+        id=free_id(kind, {*found.retired, *(f.id for f in found.features)}),
         kind=kind,
         faces=(),
         attributes={"local": local},
