@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.findings import Finding
-from trunnion.geometry.arrays import Floats
+from trunnion.findings import ADDED_UNWRITTEN, Finding
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.settings import added
 
@@ -104,7 +104,8 @@ class Recognition:
     features read from XML. `unexplained_share` is the unexplained faces' share of it. `taken_for` is the kind of part it was taken for;
     `doubt`, when not empty, the line that the steps after recognition refuse with until a person has chosen a family. `removed` has the
     faces of each feature that a person deleted: a re-run does not take up again what claims most of them. `retired` are the names of
-    features that a person emptied or deleted: no other feature gets one of them.
+    features that a person emptied or deleted: no other feature gets one of them. `neighbours` (k, 2) are the pairs of tags of faces with a
+    common edge, None where they are not known.
     """
 
     family: str
@@ -118,6 +119,7 @@ class Recognition:
     taken_for: TakenFor | None = None
     doubt: str = ""
     retired: tuple[str, ...] = added((), written=False)
+    neighbours: Ints | None = field(default=None, compare=False, metadata=ADDED_UNWRITTEN)
 
     def of_kind(self, *kinds: str) -> tuple[Feature, ...]:
         """Return the features of some kinds, in order."""

@@ -27,10 +27,10 @@ def with_manual_features(before: Recognition | None, found: Recognition) -> Reco
     by_hand = tuple(
         kept for f in before.features if f.by_hand for kept in _within(f, there, sharing)
     )
-    there_by_hand = {f.id for f in by_hand}
+    kept_names = {f.id for f in by_hand}
     retired = (
         *before.retired,
-        *(f.id for f in before.features if f.by_hand and f.id not in there_by_hand),
+        *(f.id for f in before.features if f.by_hand and f.id not in kept_names),
     )
     taken = [set(f.tags) for f in by_hand if f.kind not in sharing] + [
         set(tags) for tags in before.removed

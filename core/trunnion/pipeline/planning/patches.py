@@ -63,8 +63,7 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
 
     All groups that change are measured anew, those that lose their last face go, and so do their names: no other group gets them.
 
-    Raises `BadInput` for a face that the part doesn't have
-    or an id that no group has.
+    Raises `BadInput` for a face that the part doesn't have or an id that no group has.
     """
     found, moved = _recognition(session), set(faces)
     strange = sorted(moved - set(engine.context_of(session).part.tags))
