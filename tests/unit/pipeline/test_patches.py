@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from shaped_parts import bowl, face_towards, plate
-from trunnion.cli.main import BAD, DONE, main
+from trunnion.cli.main import BAD, DONE, PROBLEMS, main
 from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.cut import plane_cut
 from trunnion.model.session import Session
@@ -250,11 +250,13 @@ def test_words_that_mean_no_face_are_refused(engine, opened, found):
 
 def test_more_points_on_the_edges_leave_a_smaller_error(engine, opened):
     part = engine.context_of(opened).part
-    none, few, many, repair = size_errors(part, part.tags, (0, 2, 60))
+    none, few, many, repair, exact = size_errors(part, part.tags, (0, 2, 60))
     assert none.points < few.points < many.points
     assert none.largest > few.largest > many.largest >= 0.0
     assert many.largest < 1e-3
     assert repair.on_edge == -1
+    assert (exact.on_edge, exact.largest, exact.mean) == (-2, 0.0, 0.0)
+    assert exact.points > none.points and exact.seconds > 0.0
     with pytest.raises(BadInput, match="from 0"):
         size_errors(part, part.tags, (-3,))
 
@@ -316,7 +318,7 @@ def test_the_command_line_cuts_regroups_exports_and_measures(file, tmp_path, cap
     assert json.loads(capsys.readouterr().out)["faces"] == sorted([8, hollow])
     assert main(["patches", str(kept), "--points", "0,3", "--json"]) == DONE
     told = json.loads(capsys.readouterr().out)
-    assert [row["points_on_edge"] for row in told["size_errors"]] == [0, 3, -1]
+    assert [row["points_on_edge"] for row in told["size_errors"]] == [0, 3, -1, -2]
     assert told["boundary_error"]["mm"] < 1e-3
 
 
@@ -358,6 +360,33 @@ def test_the_command_line_names_what_is_dropped(file, tmp_path, capsys):
     told = json.loads(capsys.readouterr().out)
     assert told["dropped"] == [hollow] and hollow not in told["faces"]
     assert len(read_part(tmp_path / "rest.igs").tags) == 6
+
+
+@pytest.fixture(scope="module")
+def open_file(tmp_path_factory):
+    """An IGES file of five faces that enclose nothing."""
+    path = tmp_path_factory.mktemp("open") / "open.igs"
+    part = bowl(40.0, 30.0, 12.0, 10.0)
+    write_faces([part.face_shape(t) for t in part.tags[2:]], path)
+    return path
+
+
+def test_an_open_part_is_grouped_exported_and_measured_with_exit_code_0(
+    open_file, tmp_path, capsys
+):
+    grouped = [str(open_file), "--set", "family=surface"]
+    assert main(["recognize", *grouped]) == DONE
+    assert "error part.open" in capsys.readouterr().err
+    out = str(tmp_path / "rest.step")
+    assert main(["export", *grouped, "--groups", "remaining", "--out", out]) == DONE
+    assert main(["patches", str(open_file), "--points", "1"]) == DONE
+    assert "exact" in capsys.readouterr().out
+
+
+def test_an_open_part_stays_an_error_where_material_matters(open_file, capsys):
+    assert main(["info", str(open_file)]) == PROBLEMS
+    assert main(["recognize", str(open_file), "--set", "family=panel"]) in (PROBLEMS, BAD)
+    assert main(["route", str(open_file), "--set", "family=surface"]) == BAD
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,8 @@ class PatchedSession:
 
 @dataclass(frozen=True, slots=True)
 class ErrorRow:
-    """How exact the feature sizes are with so many points on each edge (-1: the paper's repair): errors as shares, wall time in s."""
+    """How exact the feature sizes are with so many points on each edge (-1: the paper's repair, -2: the exact boxes): errors as shares,
+    wall time in s."""
 
     on_edge: int
     points: int
