@@ -436,7 +436,8 @@ def test_the_error_of_the_sizes_is_shown_by_the_number_of_points(shown, qtbot):
     qtbot.waitUntil(lambda: shown.views["surface"].accuracy.shown is not None, timeout=60000)
     dock, rows = shown.views["surface"].accuracy, shown.views["surface"].accuracy.shown.rows
     assert dock.isVisible() and dock.table.rowCount() == len(rows)
-    assert dock.table.item(len(rows) - 1, 0).text() == "the paper's repair"
+    assert dock.table.item(len(rows) - 2, 0).text() == "the paper's repair"
+    assert [dock.table.item(len(rows) - 1, k).text() for k in (0, 2)] == ["exact", "0 %"]
     assert rows[0].largest > rows[3].largest >= rows[7].largest
     heights = [dock.chart.point(dock.chart.left, k).y() for k in (0, 3, 7)]
     assert heights == sorted(heights)  # less error lies lower

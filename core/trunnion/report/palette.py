@@ -75,7 +75,7 @@ class Palette:
     """Colours of features by the kinds that families declare, of radii, of motions and of deviations.
 
     `other` is that of features whose kind no registered family declares, `unexplained` that of faces in no feature; `backgrounds` are
-    what features are drawn on.
+    what features are drawn on, `selections` what is selected is drawn in.
     """
 
     kinds: Mapping[str, FeatureKind]
@@ -85,6 +85,7 @@ class Palette:
     motions: dict[str, Colour]
     deviation: DeviationColours
     backgrounds: tuple[Colour, ...] = ()
+    selections: tuple[Colour, ...] = ()
 
     def kind(self, name: str) -> Colour:
         """Return the colour of a feature kind; kinds without one of their own share that of `other`."""
@@ -121,7 +122,7 @@ class Palette:
             [self.class_of(f).colours for f in given],
             pairs,
             self.backgrounds,
-            (self.other, self.unexplained),
+            (self.other, self.unexplained, *self.selections),
         )
         return {f.id: colour for f, colour in zip(given, colours, strict=True)}
 
@@ -148,15 +149,15 @@ def load_palette() -> Palette:
         radius=radius,
         motions=motions,
         deviation=_deviation(data["deviation"]),
-        backgrounds=_backgrounds(),
+        backgrounds=(PAPER, *_of_themes("view_top", "view_bottom")),
+        selections=_of_themes("selection"),
     )
 
 
-def _backgrounds() -> tuple[Colour, ...]:
-    """Return what features are drawn on: the report's paper, and the ends of the view's shades in every theme."""
+def _of_themes(*names: str) -> tuple[Colour, ...]:
+    """Return some colours of every theme of the window, each once."""
     themes = json.loads((folder("palette") / "themes.json").read_text(encoding="utf-8"))
-    ends = (theme[end] for theme in themes.values() for end in ("view_top", "view_bottom"))
-    return tuple(dict.fromkeys((PAPER, *(rgb("view", text) for text in ends))))
+    return tuple(dict.fromkeys(rgb(name, t[name]) for t in themes.values() for name in names))
 
 
 def _deviation(data: dict[str, Any]) -> DeviationColours:

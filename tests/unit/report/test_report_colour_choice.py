@@ -78,9 +78,12 @@ def test_every_colour_stands_off_every_background():
         assert contrast(colours, np.array(background, float)).min() > 1.29
 
 
-def test_groups_keep_off_the_colours_of_what_is_in_no_group():
-    for colour in PALETTE.features(groups(16)).values():
-        assert min(apart(colour, PALETTE.other), apart(colour, PALETTE.unexplained)) > TELLABLE
+def test_groups_keep_off_the_colours_of_what_is_selected_and_of_what_is_in_no_group():
+    others = (PALETTE.other, PALETTE.unexplained, *PALETTE.selections)
+    assert len(others) >= 4
+    for is_local in (False, True):
+        colours = PALETTE.features(groups(16, lambda _, value=is_local: value)).values()
+        assert min(apart(c, other) for c in colours for other in others) > 2.0 * TELLABLE
 
 
 @pytest.mark.parametrize("step", [1, 3, 7])

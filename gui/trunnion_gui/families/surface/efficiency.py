@@ -24,6 +24,8 @@ from trunnion_gui.widgets.foldout import Foldout
 from trunnion_gui.worker.worker import Reply
 
 CUTTERS = ("large", "small")
+NARROW = 60
+"""px that a field needs at least in a narrow panel."""
 FIELDS = ("areas", "measured_area", "measured_time")
 
 
@@ -77,7 +79,9 @@ class EfficiencyBlock(Foldout):
         known = self._known[row]
         for cutter in CUTTERS:
             for name in FIELDS:
-                self.fields[cutter, name].setText(getattr(getattr(known, cutter), name))
+                field = self.fields[cutter, name]
+                field.setText(getattr(getattr(known, cutter), name))
+                field.setCursorPosition(0)
         self._compute()
 
     def _compute(self) -> None:
@@ -112,12 +116,15 @@ class EfficiencyBlock(Foldout):
         grid.setContentsMargins(0, 0, 0, 0)
         titles = (tr("Large cutter"), tr("Small cutter"))
         labels = (tr("Areas, mm²"), tr("Measured area, mm²"), tr("Measured time"))
-        for column, title in enumerate(titles, 1):
+        for column, title in enumerate(titles):
             grid.addWidget(QLabel(title), 0, column)
-        for n, (name, label) in enumerate(zip(FIELDS, labels, strict=True), 1):
-            grid.addWidget(QLabel(label), n, 0)
-            for column, cutter in enumerate(CUTTERS, 1):
-                grid.addWidget(self.fields[cutter, name], n, column)
+        for n, (name, words) in enumerate(zip(FIELDS, labels, strict=True)):
+            label = QLabel(words)
+            label.setObjectName("muted")
+            grid.addWidget(label, 2 * n + 1, 0, 1, len(CUTTERS))
+            for column, cutter in enumerate(CUTTERS):
+                self.fields[cutter, name].setMinimumWidth(NARROW)
+                grid.addWidget(self.fields[cutter, name], 2 * n + 2, column)
         self.content.addWidget(body)
         self.content.addWidget(self.words)
 
