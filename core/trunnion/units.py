@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 
 MM_PER_INCH = 25.4
 SECONDS_PER_MINUTE = 60.0
+MINUTES_PER_HOUR = 60.0
 WATTS_PER_KILOWATT = 1000.0
 MM_PER_METRE = 1000.0
 METRES_PER_FOOT = 0.3048
@@ -46,3 +48,33 @@ def percent(share: float) -> str:
     '97 %'
     """
     return f"{100.0 * share:.0f} %"
+
+
+def seconds_of(words: str) -> float:
+    """Return a time in s from hours, minutes and seconds as a person writes them; raise `ValueError` for other words.
+
+    >>> seconds_of("2 h 16 min 02 s"), seconds_of("1 h"), seconds_of("90.5")
+    (8162.0, 3600.0, 90.5)
+    """
+    number = r"(\d+(?:\.\d+)?)"
+    found = re.fullmatch(
+        rf"(?:{number}\s*h)?\s*(?:{number}\s*min)?\s*(?:{number}\s*s?)?", words.strip()
+    )
+    if found is None or not any(found.groups()):
+        raise ValueError(f"must be a time such as 2 h 16 min 02 s, or in seconds; got {words!r}")
+    hours, minutes, seconds = (float(part or 0.0) for part in found.groups())
+    return (hours * MINUTES_PER_HOUR + minutes) * SECONDS_PER_MINUTE + seconds
+
+
+def timed(seconds: float) -> str:
+    """Return a time in the words that `seconds_of` reads, to the last digit.
+
+    >>> timed(8162.0), timed(90.5), timed(3600.0)
+    ('2 h 16 min 02 s', '1 min 30.5 s', '1 h 00 min 00 s')
+    """
+    if not seconds.is_integer():
+        minutes = int(seconds // SECONDS_PER_MINUTE)
+        return f"{minutes} min {seconds - minutes * SECONDS_PER_MINUTE:.9g} s"
+    minutes, rest = divmod(int(seconds), int(SECONDS_PER_MINUTE))
+    hours, minutes = divmod(minutes, int(MINUTES_PER_HOUR))
+    return f"{hours} h {minutes:02d} min {rest:02d} s" if hours else f"{minutes} min {rest:02d} s"

@@ -436,7 +436,8 @@ def test_the_error_of_the_sizes_is_shown_by_the_number_of_points(shown, qtbot):
     qtbot.waitUntil(lambda: shown.views["surface"].accuracy.shown is not None, timeout=60000)
     dock, rows = shown.views["surface"].accuracy, shown.views["surface"].accuracy.shown.rows
     assert dock.isVisible() and dock.table.rowCount() == len(rows)
-    assert dock.table.item(len(rows) - 1, 0).text() == "the paper's repair"
+    assert dock.table.item(len(rows) - 2, 0).text() == "the paper's repair"
+    assert [dock.table.item(len(rows) - 1, k).text() for k in (0, 2)] == ["exact", "0 %"]
     assert rows[0].largest > rows[3].largest >= rows[7].largest
     heights = [dock.chart.point(dock.chart.left, k).y() for k in (0, 3, 7)]
     assert heights == sorted(heights)  # less error lies lower
@@ -475,3 +476,41 @@ def test_a_saved_project_opens_with_its_cuts_and_what_was_called_local(
         group_at(window, ON_TOP).id == id and group_at(window, ON_TOP).attributes["local"] is True
     )
     assert window.document.states["recognize"] == "done"
+
+
+def test_own_areas_and_times_give_the_papers_gains(shown, qtbot):
+    block = shown.views["surface"].efficiency
+    assert shown.panels["optimize"].isAncestorOf(block) and not block.isHidden()
+    block.fold(False)
+    qtbot.waitUntil(lambda: "28.18 %" in block.words.text(), timeout=30000)
+    assert [block.choice.itemText(n) for n in range(block.choice.count())] == [
+        "Test piece",
+        "Whole impeller",
+        "Turbine blade",
+    ]
+    assert block.fields["large", "measured_time"].text() == "2 h 16 min 02 s"
+    block.choice.setCurrentIndex(1)
+    block.choice.activated.emit(1)
+    qtbot.waitUntil(lambda: "20.14 %" in block.words.text(), timeout=30000)
+    for cutter, area in (("large", "735.836"), ("small", "737.478")):
+        field = block.fields[cutter, "areas"]
+        field.selectAll()
+        QTest.keyClicks(field, area)
+    qtbot.waitUntil(lambda: "12.33 %" in block.words.text(), timeout=30000)
+    QTest.keyClicks(field, "x")
+    qtbot.waitUntil(lambda: "areas must be a number" in block.words.text(), timeout=30000)
+    block.fold(True)
+
+
+def test_areas_and_times_are_opened_from_a_file(shown, qtbot, tmp_path, monkeypatch):
+    block, file = shown.views["surface"].efficiency, tmp_path / "own.toml"
+    cutter = "areas = [{}]\nmeasured_area = 10\nmeasured_time = {}\n"
+    file.write_text(f"[own.large]\n{cutter.format(100, 60)}[own.small]\n{cutter.format(0.5, 90)}")
+    monkeypatch.setattr(block, "_choose_path", lambda: str(file))
+    block.open_button.click()
+    qtbot.waitUntil(lambda: block.choice.itemText(0) == "own", timeout=30000)
+    # 904.5 s by the small one alone, 600 + 4.5 s with both
+    qtbot.waitUntil(lambda: "49.63 %" in block.words.text(), timeout=30000)
+    monkeypatch.setattr(block, "_choose_path", lambda: str(tmp_path / "none.toml"))
+    block.open_button.click()
+    qtbot.waitUntil(lambda: "none.toml: No such file" in block.words.text(), timeout=30000)

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from trunnion.pipeline import Engine
 
 
+OPEN = "part.open"
+"""The code of the finding that a part's faces enclose no material."""
+
+
 def part_command(
     commands: Any, name: str, help: str, description: str = ""
 ) -> argparse.ArgumentParser:
@@ -177,6 +181,16 @@ def with_manual_edits(options: argparse.Namespace, engine: Engine, session: Sess
     return session
 
 
+def dropped_words(tags: Sequence[int]) -> str:
+    """Return the patches that are in no group in words, each by its number.
+
+    >>> dropped_words([12]), dropped_words([3, 9])
+    ('1 dropped patch (face 12)', '2 dropped patches (faces 3, 9)')
+    """
+    patches, faces = ("patch", "face") if len(tags) == 1 else ("patches", "faces")
+    return f"{len(tags)} dropped {patches} ({faces} {', '.join(map(str, tags))})"
+
+
 def listed(words: str) -> tuple[str, ...]:
     """Return the words that commas part.
 
@@ -223,6 +237,9 @@ def table(rows: Sequence[tuple[str, ...]], right: tuple[int, ...] = ()) -> str:
     return "\n".join(lines)
 
 
-def exit_code(findings: Iterable[Finding]) -> int:
-    """Return 1 when any finding is an error, 0 otherwise."""
-    return 1 if has_errors(findings) else 0
+def exit_code(findings: Iterable[Finding], *, may_be_open: bool = False) -> int:
+    """Return 1 when any finding is an error, 0 otherwise.
+
+    That a part's faces enclose nothing is no error to a command for which it `may_be_open`: grouping and exporting patches need no solid.
+    """
+    return 1 if has_errors(f for f in findings if not (may_be_open and f.code == OPEN)) else 0

@@ -9,6 +9,7 @@ from typing import Any
 from trunnion.cli.common import (
     add_manual_edits,
     check_output,
+    dropped_words,
     exit_code,
     listed,
     open_session,
@@ -31,7 +32,8 @@ def add(commands: Any) -> None:
         "--groups",
         metavar="WORD,...",
         default="local",
-        help="local, remaining, or ids such as group-03 (default: local)",
+        help="local, remaining, dropped (slivers and what is below the smallest feature size, which no other word "
+        "writes), or ids such as group-03 (default: local)",
     )
     made.add_argument(
         "--out",
@@ -46,7 +48,7 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the faces and report how many they are."""
-    from trunnion.pipeline.planning.patches import export, tags_of
+    from trunnion.pipeline.planning.patches import dropped, export, tags_of
 
     if not options.out.parent.is_dir():
         raise BadInput(f"{options.out}: there is no folder {options.out.parent}")
@@ -56,9 +58,20 @@ def run(options: argparse.Namespace) -> int:
     what = listed(options.groups)
     tags = tags_of(session, what)
     export(engine, session, what, options.out)
+    assert session.recognition is not None
+    apart = [t for t in dropped(session.recognition) if t not in tags]
     if options.json:
-        show_json({"file": str(options.out), "groups": list(what), "faces": list(tags)})
+        show_json(
+            {
+                "file": str(options.out),
+                "groups": list(what),
+                "faces": list(tags),
+                "dropped": apart,
+            }
+        )
     else:
         print(f"{len(tags)} faces written to {options.out}")
+        if apart:
+            print(f"{dropped_words(apart)}: not written")
     show_findings(options, session.findings())
-    return exit_code(session.findings())
+    return exit_code(session.findings(), may_be_open=True)

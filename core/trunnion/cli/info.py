@@ -3,9 +3,22 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from trunnion.cli.common import exit_code, open_session, part_command, show_findings, show_json
+from trunnion.cli.common import (
+    exit_code,
+    open_session,
+    part_command,
+    show_findings,
+    show_json,
+    table,
+)
+
+if TYPE_CHECKING:
+    from trunnion.pipeline.part_entities import FileEntities
+
+MOST_FACES = 40
+"""Faces whose entities are printed; JSON has all."""
 
 
 def add(commands: Any) -> None:
@@ -15,8 +28,10 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the part's facts."""
-    _, session = open_session(options, None)
-    part = session.part
+    from trunnion.pipeline.part_entities import file_entities
+
+    engine, session = open_session(options, None)
+    part, listed = session.part, file_entities(engine, session)
     assert part is not None
     size = [float(h - l) for l, h in zip(part.low, part.high, strict=True)]
     if options.json:
@@ -33,6 +48,7 @@ def run(options: argparse.Namespace) -> int:
                 "low": list(map(float, part.low)),
                 "high": list(map(float, part.high)),
                 "size": size,
+                "entities": listed.as_dict() if listed else None,
                 "findings": [f.as_dict() for f in part.findings],
             }
         )
@@ -44,5 +60,20 @@ def run(options: argparse.Namespace) -> int:
         print(f"area    {part.area:.1f} mm2")
         print(f"volume  {part.volume:.1f} mm3")
         print(f"digest  {part.digest}")
+        if listed is not None:
+            print(f"\n{entity_text(listed)}")
     show_findings(options, part.findings)
     return exit_code(part.findings)
+
+
+def entity_text(listed: FileEntities) -> str:
+    """Return the types of an IGES file's entities with their number, and the entity that each face comes from, as aligned text."""
+    from trunnion.pipeline.part_entities import type_name
+
+    types = [("entity", "", "n")]
+    types += [(str(n), type_name(n), str(count)) for n, count in listed.counts().items()]
+    faces = [("face", "entity and its parts, by lines of the directory")]
+    faces += [(str(tag), listed.words(line)) for tag, line in listed.faces.items()][:MOST_FACES]
+    more = len(listed.faces) - MOST_FACES
+    rest = f"\nand {more} more faces: --json has all" if more > 0 else ""
+    return f"{table(types, right=(0, 2))}\n\n{table(faces, right=(0,))}{rest}"

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.findings import Finding
-from trunnion.geometry.arrays import Floats
+from trunnion.findings import ADDED_UNWRITTEN, Finding
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.settings import added
 
 Size = float | int | bool | str | tuple[float, ...]
 
@@ -102,7 +103,9 @@ class Recognition:
     `face_area` (n_faces,) float64, mm2, is the area of every face of the part in the order of the tags; empty where it is not known, as in
     features read from XML. `unexplained_share` is the unexplained faces' share of it. `taken_for` is the kind of part it was taken for;
     `doubt`, when not empty, the line that the steps after recognition refuse with until a person has chosen a family. `removed` has the
-    faces of each feature that a person deleted: a re-run does not take up again what claims most of them.
+    faces of each feature that a person deleted: a re-run does not take up again what claims most of them. `retired` are the names of
+    features that a person emptied or deleted: no other feature gets one of them. `neighbours` (k, 2) are the pairs of tags of faces with a
+    common edge, None where they are not known.
     """
 
     family: str
@@ -115,10 +118,18 @@ class Recognition:
     removed: tuple[tuple[int, ...], ...] = ()
     taken_for: TakenFor | None = None
     doubt: str = ""
+    retired: tuple[str, ...] = added((), written=False)
+    neighbours: Ints | None = field(default=None, compare=False, metadata=ADDED_UNWRITTEN)
 
     def of_kind(self, *kinds: str) -> tuple[Feature, ...]:
         """Return the features of some kinds, in order."""
         return tuple(f for f in self.features if f.kind in kinds)
+
+    @property
+    def dropped(self) -> tuple[int, ...]:
+        """The tags that recognition itself put in no feature; faces of features that a person deleted are not among them."""
+        deleted = {tag for tags in self.removed for tag in tags}
+        return tuple(tag for tag in self.unexplained if tag not in deleted)
 
     def __iter__(self) -> Iterator[Feature]:
         return iter(self.features)
@@ -136,7 +147,10 @@ class Recognition:
         kept = tuple(f for f in self.features if f.id != id)
         loose = {*self.unexplained, *gone.tags} - {tag for f in kept for tag in f.tags}
         return replace(
-            self.with_unexplained(loose), features=kept, removed=(*self.removed, gone.tags)
+            self.with_unexplained(loose),
+            features=kept,
+            removed=(*self.removed, gone.tags),
+            retired=(*self.retired, id),
         )
 
     def with_unexplained(self, tags: Iterable[int]) -> Recognition:

@@ -83,6 +83,7 @@ def divided(part: Part, cut: Cut) -> Part:
         n_faces=facts.n_faces + len(new_tags) - 1,
         tags=tags,
         names=_inherited(facts.names, new_tags),
+        entities=_inherited(facts.entities, new_tags),
         colours=_inherited(facts.colours, new_tags),
     )
     as_read[cut.face - 1] = read_pieces[0]

@@ -34,7 +34,8 @@ class PartMetadata:
     """What is known of a part beside its shape.
 
     `unit` is the file's own ("mm", "inch", ...), lengths here are mm; `tags` (k,) the tag of every face of the chosen solid in the
-    order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them.
+    order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them; `entities`
+    the first line in an IGES file's directory of the entity that a face comes from, by its tag.
     """
 
     path: str
@@ -50,6 +51,7 @@ class PartMetadata:
     tags: tuple[int, ...]
     names: Mapping[int, str] = field(default_factory=dict)
     colours: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
+    entities: Mapping[int, int] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
 
     def to_json(self) -> str:
@@ -67,6 +69,7 @@ class PartMetadata:
         )
         data["names"] = {int(k): v for k, v in data["names"].items()}
         data["colours"] = {int(k): tuple(v) for k, v in data["colours"].items()}
+        data["entities"] = {int(k): v for k, v in data["entities"].items()}
         data["tags"] = tuple(data["tags"])
         return PartMetadata(**data)
 
@@ -115,6 +118,10 @@ class Part:
     )
     colours = property(
         lambda self: self.facts.colours, doc="Colours of faces by tag, where the file gives them."
+    )
+    entities = property(
+        lambda self: self.facts.entities,
+        doc="The line in an IGES file's directory of the entity of a face, by its tag.",
     )
     findings = property(
         lambda self: self.facts.findings, doc="What a person should know about the file."

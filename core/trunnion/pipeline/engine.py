@@ -295,15 +295,21 @@ class Engine:
         progress: Progress = NO_PROGRESS,
     ) -> tuple[str, ...]:
         """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
+        from trunnion.pipeline.planning.finishing_estimate import estimate
         from trunnion.pipeline.writing import name_of, write_documents
 
         if self.states(session)["verify"] not in FRESH:
             raise BadCall("something changed since the proof: verify again before anything leaves")
-        part, progress = self.context_of(session).part, progress.afresh()
-        with compiling(progress), part.watched(progress):
-            mesh = part.mesh(tolerance.PICTURE)
+        context, progress = self.context_of(session), progress.afresh()
+        with compiling(progress), context.part.watched(progress):
             files = write_documents(
-                session, mesh, Path(folder), name=name, date=date, progress=progress.part(0.1, 0.9)
+                session,
+                context.part.mesh(tolerance.PICTURE),
+                Path(folder),
+                name=name,
+                date=date,
+                estimate=estimate(session, context),
+                progress=progress.part(0.1, 0.9),
             )
         project = f"{name_of(session, name)}{PROJECT_SUFFIX}"
         progress.at(0.9, "saving the project")

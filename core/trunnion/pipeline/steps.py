@@ -93,7 +93,10 @@ def _route_settings() -> tuple[type, ...]:
 
 
 def _recognize(session: Session, context: Context, progress: Progress) -> Result:
-    found = replace(recognised(session, context, progress), face_area=context.part.graph().area)
+    graph = context.part.graph()
+    found = replace(
+        recognised(session, context, progress), face_area=graph.area, neighbours=graph.edge_face + 1
+    )
     kept = with_manual_features(session.recognition, found)
     after = replace(session, recognition=kept)
     return Result(

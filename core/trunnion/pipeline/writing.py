@@ -8,6 +8,7 @@ from pathlib import Path
 from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.session import Session
+from trunnion.plan.freeform.estimate.finishing_time import Estimate
 from trunnion.post.release import release
 from trunnion.progress import Progress
 from trunnion.store.atomic import write_text
@@ -23,9 +24,19 @@ def write_programs(
 
 
 def write_documents(
-    session: Session, mesh: Mesh, folder: Path, *, name: str, date: str, progress: Progress
+    session: Session,
+    mesh: Mesh,
+    folder: Path,
+    *,
+    name: str,
+    date: str,
+    estimate: Estimate | None = None,
+    progress: Progress,
 ) -> tuple[str, ...]:
-    """Write programs, tool list, XML, pictures and report of a proven session and return the file names."""
+    """Write programs, tool list, XML, pictures and report of a proven session and return the file names.
+
+    The report has the times of areas where an `estimate` of them is given.
+    """
     from trunnion.report.html import report_html
     from trunnion.report.palette import load_palette
     from trunnion.report.pictures import write_pictures
@@ -49,7 +60,8 @@ def write_documents(
     write_process(session, folder / f"{stem}.process.xml")
     pictures = write_pictures(session, mesh, folder, stem, load_palette(), progress.part(0.3, 0.9))
     progress.at(0.9, "writing the report")
-    write_text(folder / f"{stem}.report.html", report_html(session, stem, pictures, folder, date))
+    page = report_html(session, stem, pictures, folder, date, estimate)
+    write_text(folder / f"{stem}.report.html", page)
     progress.at(1.0, "report written")
     return (
         *files,

@@ -76,7 +76,8 @@ class PartKind(Protocol):
 class LegendClass:
     """Features of a kind that legends count together: those whose `attribute` is true, or (empty) all that no other class has.
 
-    `label` is what several of them are called; `colours` (`#rrggbb`) distinguish neighbours, used in turn, the first represents the class.
+    `label` is what several of them are called. One of `colours` (`#rrggbb`) is that of all; with several each feature has one of its own of
+    hues around theirs (`report.colour_choice`), and the first represents the class.
     """
 
     label: str

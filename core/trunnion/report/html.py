@@ -11,8 +11,9 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.repair import words_of
 from trunnion.model.session import Session
 from trunnion.model.spindle import FeedMode, SpindleMode
+from trunnion.plan.freeform.estimate.finishing_time import Estimate
 from trunnion.report.pictures import Picture
-from trunnion.units import SECONDS_PER_MINUTE, degrees
+from trunnion.units import degrees, timed
 from trunnion_resources import folder as resource_folder
 
 ROUNDING = 1e-6
@@ -20,9 +21,17 @@ ROUNDING = 1e-6
 
 
 def report_html(
-    session: Session, name: str, pictures: Sequence[Picture], folder: Path, date: str = ""
+    session: Session,
+    name: str,
+    pictures: Sequence[Picture],
+    folder: Path,
+    date: str = "",
+    estimate: Estimate | None = None,
 ) -> str:
-    """Return the report of a session, the same bytes for the same session; the pictures are read from the folder and stand in the text."""
+    """Return the report of a session, the same bytes for the same session; the pictures are read from the folder and stand in the text.
+
+    `estimate` has the times of areas that are finished and the gain of cutters of their own, where the plan has such areas.
+    """
     from jinja2 import Environment, StrictUndefined
 
     template = (resource_folder("report") / "report.html").read_text(encoding="utf-8")
@@ -47,6 +56,7 @@ def report_html(
         residual_faces=residual_faces(session),
         spindle=spindle,
         feed=feed,
+        estimate=estimate,
         fix_words=words_of,
     )
 
@@ -69,9 +79,7 @@ def feed(data: CuttingData) -> str:
 
 def duration(seconds: float) -> str:
     """Return a time in words: `1 h 02 min 05 s`."""
-    minutes, rest = divmod(round(seconds), int(SECONDS_PER_MINUTE))
-    hours, minutes = divmod(minutes, int(SECONDS_PER_MINUTE))
-    return f"{hours} h {minutes:02d} min {rest:02d} s" if hours else f"{minutes} min {rest:02d} s"
+    return timed(float(round(seconds)))
 
 
 def share(value: float) -> str:

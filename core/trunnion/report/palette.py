@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from collections import Counter
@@ -13,12 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.findings import BadInput
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.feature import Feature
 from trunnion.recognize.contract import FeatureKind, feature_kinds
+from trunnion.report.colour_choice import Colour as Colour
+from trunnion.report.colour_choice import distinct_colours, pairs_of
 from trunnion_resources import folder
 
-Colour = tuple[int, int, int]
+PAPER: Colour = (255, 255, 255)
+"""The report's ground."""
 OTHER, UNEXPLAINED = "other", "unexplained"
 """What has a colour of its own beside the kinds that families declare: features of any other kind, and faces in no feature."""
 
@@ -59,7 +63,8 @@ class RadiusColours:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassColours:
-    """A class of features in legends: what several are called, and its colours, which distinguish neighbours, used in turn."""
+    """A class of features in legends: what several are called, and its colours: one for all, or some whose hues say where each
+    has one of its own."""
 
     label: str
     colours: tuple[Colour, ...]
@@ -69,7 +74,8 @@ class ClassColours:
 class Palette:
     """Colours of features by the kinds that families declare, of radii, of motions and of deviations.
 
-    `other` is that of features whose kind no registered family declares, `unexplained` that of faces in no feature.
+    `other` is that of features whose kind no registered family declares, `unexplained` that of faces in no feature; `backgrounds` are
+    what features are drawn on, `selections` what is selected is drawn in.
     """
 
     kinds: Mapping[str, FeatureKind]
@@ -78,6 +84,8 @@ class Palette:
     radius: RadiusColours
     motions: dict[str, Colour]
     deviation: DeviationColours
+    backgrounds: tuple[Colour, ...] = ()
+    selections: tuple[Colour, ...] = ()
 
     def kind(self, name: str) -> Colour:
         """Return the colour of a feature kind; kinds without one of their own share that of `other`."""
@@ -101,15 +109,22 @@ class Palette:
         rank = {label: n for n, label in enumerate(labels)}
         return dict(sorted(met.items(), key=lambda item: rank.get(item[0].label, -1)))
 
-    def features(self, features: Iterable[Feature]) -> dict[str, Colour]:
-        """Return the colour of each feature by id: its kind's, or by turns one of its class."""
-        found: dict[str, Colour] = {}
-        met: Counter[ClassColours] = Counter()
-        for f in features:
-            colour_class = self.class_of(f)
-            found[f.id] = colour_class.colours[met[colour_class] % len(colour_class.colours)]
-            met[colour_class] += 1
-        return found
+    def features(
+        self, features: Iterable[Feature], neighbours: Ints | None = None
+    ) -> dict[str, Colour]:
+        """Return the colour of each feature by id: its kind's, or one of its own among those of its class.
+
+        `neighbours` are the pairs of faces (k, 2) with a common edge, where they are known: features that meet are farthest apart.
+        """
+        given = tuple(features)
+        pairs = () if neighbours is None else pairs_of([f.tags for f in given], neighbours)
+        colours = distinct_colours(
+            [self.class_of(f).colours for f in given],
+            pairs,
+            self.backgrounds,
+            (self.other, self.unexplained, *self.selections),
+        )
+        return {f.id: colour for f, colour in zip(given, colours, strict=True)}
 
     def motion(self, name: str) -> Colour:
         """Return the colour of a kind of motion."""
@@ -134,7 +149,15 @@ def load_palette() -> Palette:
         radius=radius,
         motions=motions,
         deviation=_deviation(data["deviation"]),
+        backgrounds=(PAPER, *_of_themes("view_top", "view_bottom")),
+        selections=_of_themes("selection"),
     )
+
+
+def _of_themes(*names: str) -> tuple[Colour, ...]:
+    """Return some colours of every theme of the window, each once."""
+    themes = json.loads((folder("palette") / "themes.json").read_text(encoding="utf-8"))
+    return tuple(dict.fromkeys(rgb(name, t[name]) for t in themes.values() for name in names))
 
 
 def _deviation(data: dict[str, Any]) -> DeviationColours:

@@ -166,7 +166,7 @@ def _features(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
     plotter, surface = _plotter(), _surface(mesh.points, mesh.triangles)
     recognition = session.recognition
     assert recognition is not None
-    own = palette.features(recognition.features)
+    own = palette.features(recognition, recognition.neighbours)
     by_face = {tag: own[f.id] for f in reversed(recognition.features) for tag in f.tags}
     surface.cell_data["colour"] = _colours(mesh, by_face, palette.kind("unexplained"))
     plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.25, diffuse=0.8)

@@ -12,6 +12,7 @@ from typing import Any
 
 from trunnion.findings import BadInput
 from trunnion.registry import resource_folders
+from trunnion.units import seconds_of
 
 SUFFIX = ".toml"
 
@@ -70,10 +71,12 @@ class CatalogueEntry:
             raise self.wrong(f"{name} knows {', '.join(known)}; got {strange[0]!r}")
         return tuple(value)
 
-    def numbers(self, name: str, low: float, high: float) -> tuple[float, ...]:
-        """Return a list of numbers within bounds, at least one."""
+    def numbers(
+        self, name: str, low: float, high: float, *, may_be_empty: bool = False
+    ) -> tuple[float, ...]:
+        """Return a list of numbers within bounds, at least one unless it may be empty."""
         value = self._get(name, None)
-        if not isinstance(value, list) or not value:
+        if not isinstance(value, list) or not (value or may_be_empty):
             raise self.wrong(f"{name} must be a list of numbers; got {value!r}")
         return tuple(self._number(name, v, low, high) for v in value)
 
@@ -87,6 +90,16 @@ class CatalogueEntry:
         ):
             raise self.wrong(f"{name} must be rows of {width} numbers; got {value!r}")
         return tuple(tuple(self._number(name, v, low, high) for v in row) for row in value)
+
+    def seconds(self, name: str, low: float, high: float) -> float:
+        """Return a time in s within bounds: a number of seconds, or words such as `2 h 16 min 02 s`."""
+        value = self._get(name, None)
+        if isinstance(value, str):
+            try:
+                value = seconds_of(value)
+            except ValueError as reason:
+                raise self.wrong(f"{name} {reason}") from None
+        return self._number(name, value, low, high)
 
     def table(self, name: str) -> CatalogueEntry:
         """Return a table inside this entry."""
@@ -147,10 +160,15 @@ def entries(kind: str, user_folder: Path | None) -> Iterator[tuple[int, Catalogu
                 (p for p in folder.iterdir() if p.name.endswith(SUFFIX)), key=lambda p: p.name
             ):
                 label = f"{kind}/{path.name}" if layer == 0 else str(path)
-                for name, table in _parsed(path, label).items():
-                    if not isinstance(table, dict):
-                        raise BadInput(f"{label}: {name} must be a table, written as [{name}]")
-                    yield layer, CatalogueEntry(file=label, name=name, fields=table)
+                yield from ((layer, entry) for entry in file_entries(path, label))
+
+
+def file_entries(path: Traversable, label: str) -> Iterator[CatalogueEntry]:
+    """Yield the top tables of one file, in their order; `label` names it in messages. Raises `BadInput` for what is no such file."""
+    for name, table in _parsed(path, label).items():
+        if not isinstance(table, dict):
+            raise BadInput(f"{label}: {name} must be a table, written as [{name}]")
+        yield CatalogueEntry(file=label, name=name, fields=table)
 
 
 def by_name(found: Iterable[tuple[int, CatalogueEntry]]) -> dict[str, CatalogueEntry]:

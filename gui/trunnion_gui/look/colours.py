@@ -74,7 +74,7 @@ def kinds() -> tuple[str, ...]:
 
 def feature_colours(found: Recognition) -> dict[str, str]:
     """Return the colour of every feature by id: its kind's, or one of its own."""
-    return {id: hexed(colour) for id, colour in palette().features(found).items()}
+    return {id: hexed(colour) for id, colour in palette().features(found, found.neighbours).items()}
 
 
 def motions() -> dict[str, str]:

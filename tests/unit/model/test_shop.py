@@ -343,6 +343,19 @@ def test_a_broken_file_is_told_in_one_line(tmp_path, kind, text, words):
     assert words in str(told.value) and "\n" not in str(told.value)
 
 
+def test_the_papers_material_has_figures_of_its_own_with_their_sources():
+    found = load_shop().material("EN AW-6061")
+    assert (found.iso_group, found.density, found.force, found.force_exponent) == (
+        "N",
+        2.70,
+        800.0,
+        0.25,
+    )
+    assert "VDI 3323" in found.source and found.source.count(";") >= 6
+
+
 def test_an_unknown_name_lists_the_known_ones():
-    with pytest.raises(BadInput, match="unknown material Brass; known: C45, EN AW-7050"):
+    with pytest.raises(
+        BadInput, match="unknown material Brass; known: C45, EN AW-6061, EN AW-7050"
+    ):
         load_shop().material("Brass")

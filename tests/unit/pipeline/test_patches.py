@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
 from shaped_parts import bowl, face_towards, plate
-from trunnion.cli.main import BAD, DONE, main
+from trunnion.cli.main import BAD, DONE, PROBLEMS, main
 from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.cut import plane_cut
 from trunnion.model.session import Session
@@ -109,6 +110,47 @@ def test_groups_found_again_take_free_names_beside_those_made_by_hand(engine, fo
     assert shared_out(again) == list(range(1, 8))
 
 
+def emptied(engine, found, *faces):
+    """Return the session after faces went to a new group and on to the first one, and the name that group had."""
+    made = with_moved(engine, found, faces)
+    name = group_of(made, faces[0])
+    return with_moved(engine, made, faces, made.recognition.features[0].id), name
+
+
+def test_the_name_of_an_emptied_group_is_not_given_again(engine, found):
+    hollow = hollow_of(engine, found)
+    session, name = emptied(engine, found, hollow)
+    assert name not in {f.id for f in session.recognition}
+    again = with_moved(engine, session, [hollow])
+    assert group_of(again, hollow) not in {name, *(f.id for f in found.recognition)}
+
+
+def test_names_that_were_given_survive_a_project_file(engine, found, tmp_path):
+    hollow = hollow_of(engine, found)
+    session, name = emptied(engine, found, hollow)
+    engine.save(session, tmp_path / "bowl.trunnion")
+    other = Engine()
+    opened = other.open(tmp_path / "bowl.trunnion")
+    assert name in opened.recognition.retired
+    assert group_of(with_moved(other, opened, [hollow]), hollow) != name
+
+
+def test_recognition_gives_no_name_again_that_an_emptied_group_had(engine, found):
+    first, *_, last = found.recognition.features
+    moved = with_moved(engine, found, last.tags, first.id)
+    again = engine.run(engine.with_choices(moved, {"grouping": "aligned"}), "recognize")
+    assert last.id not in {f.id for f in again.recognition}
+    assert shared_out(again) == list(range(1, 8))
+    hollow = hollow_of(engine, again)
+    assert group_of(with_moved(engine, again, [hollow]), hollow) != last.id
+
+
+def test_the_name_of_a_deleted_group_is_not_given_again(engine, found):
+    gone, kept, *_ = found.recognition.features
+    session = replace(found, recognition=found.recognition.without(gone.id))
+    assert group_of(with_moved(engine, session, kept.tags[:1]), kept.tags[0]) != gone.id
+
+
 def test_a_cut_makes_recognition_stale_and_its_pieces_are_found_as_patches(engine, found):
     hollow = hollow_of(engine, found)
     cut = with_cut(engine, found, plane_cut(hollow, (20.0, 15.0, 8.0), (0.0, 0.0, 1.0)))
@@ -208,11 +250,13 @@ def test_words_that_mean_no_face_are_refused(engine, opened, found):
 
 def test_more_points_on_the_edges_leave_a_smaller_error(engine, opened):
     part = engine.context_of(opened).part
-    none, few, many, repair = size_errors(part, part.tags, (0, 2, 60))
+    none, few, many, repair, exact = size_errors(part, part.tags, (0, 2, 60))
     assert none.points < few.points < many.points
     assert none.largest > few.largest > many.largest >= 0.0
     assert many.largest < 1e-3
     assert repair.on_edge == -1
+    assert (exact.on_edge, exact.largest, exact.mean) == (-2, 0.0, 0.0)
+    assert exact.points > none.points and exact.seconds > 0.0
     with pytest.raises(BadInput, match="from 0"):
         size_errors(part, part.tags, (-3,))
 
@@ -274,8 +318,75 @@ def test_the_command_line_cuts_regroups_exports_and_measures(file, tmp_path, cap
     assert json.loads(capsys.readouterr().out)["faces"] == sorted([8, hollow])
     assert main(["patches", str(kept), "--points", "0,3", "--json"]) == DONE
     told = json.loads(capsys.readouterr().out)
-    assert [row["points_on_edge"] for row in told["size_errors"]] == [0, 3, -1]
+    assert [row["points_on_edge"] for row in told["size_errors"]] == [0, 3, -1, -2]
     assert told["boundary_error"]["mm"] < 1e-3
+
+
+def dropping(engine, opened):
+    """Return the bowl's session with its hollow below the smallest feature size."""
+    return engine.run(
+        engine.with_choices(opened, {"recognize.surface.smallest": 25.0}), "recognize"
+    )
+
+
+def test_dropped_patches_are_in_no_export_but_their_own(engine, opened):
+    engine.context_of(opened)
+    session = dropping(engine, opened)
+    hollow = hollow_of(engine, session)
+    assert session.recognition.dropped == (hollow,)
+    assert tags_of(session, ["remaining"]) == tuple(sorted(set(range(1, 8)) - {hollow}))
+    assert tags_of(session, ["dropped"]) == (hollow,)
+    grouped = with_moved(engine, session, [hollow])
+    assert grouped.recognition.dropped == () and hollow in tags_of(grouped, ["remaining"])
+
+
+def test_faces_of_a_deleted_group_are_not_dropped(engine, found):
+    gone = found.recognition.features[0]
+    session = replace(found, recognition=found.recognition.without(gone.id))
+    assert session.recognition.unexplained == gone.tags and session.recognition.dropped == ()
+    assert set(gone.tags) <= set(tags_of(session, ["remaining"]))
+
+
+def test_the_command_line_names_what_is_dropped(file, tmp_path, capsys):
+    hollow = bowl(40.0, 30.0, 12.0, 10.0).graph().surface.index("sphere") + 1
+    words = [str(file), "--set", "family=surface", "--set", "recognize.surface.smallest=25"]
+    assert main(["recognize", *words]) == DONE
+    assert f"1 dropped patch (face {hollow})" in capsys.readouterr().out
+    rest = ["export", *words, "--groups", "remaining", "--out", str(tmp_path / "rest.igs")]
+    assert main(rest) == DONE
+    said = capsys.readouterr().out
+    assert "6 faces written" in said and f"1 dropped patch (face {hollow}): not written" in said
+    assert main([*rest, "--json"]) == DONE
+    told = json.loads(capsys.readouterr().out)
+    assert told["dropped"] == [hollow] and hollow not in told["faces"]
+    assert len(read_part(tmp_path / "rest.igs").tags) == 6
+
+
+@pytest.fixture(scope="module")
+def open_file(tmp_path_factory):
+    """An IGES file of five faces that enclose nothing."""
+    path = tmp_path_factory.mktemp("open") / "open.igs"
+    part = bowl(40.0, 30.0, 12.0, 10.0)
+    write_faces([part.face_shape(t) for t in part.tags[2:]], path)
+    return path
+
+
+def test_an_open_part_is_grouped_exported_and_measured_with_exit_code_0(
+    open_file, tmp_path, capsys
+):
+    grouped = [str(open_file), "--set", "family=surface"]
+    assert main(["recognize", *grouped]) == DONE
+    assert "error part.open" in capsys.readouterr().err
+    out = str(tmp_path / "rest.step")
+    assert main(["export", *grouped, "--groups", "remaining", "--out", out]) == DONE
+    assert main(["patches", str(open_file), "--points", "1"]) == DONE
+    assert "exact" in capsys.readouterr().out
+
+
+def test_an_open_part_stays_an_error_where_material_matters(open_file, capsys):
+    assert main(["info", str(open_file)]) == PROBLEMS
+    assert main(["recognize", str(open_file), "--set", "family=panel"]) in (PROBLEMS, BAD)
+    assert main(["route", str(open_file), "--set", "family=surface"]) == BAD
 
 
 @pytest.mark.parametrize(

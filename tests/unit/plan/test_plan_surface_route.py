@@ -228,6 +228,15 @@ def test_a_speck_is_finished_with_the_area_around_it(speckled):
     assert not [f for f in session.process.findings if f.code == "route.not-planned"]
 
 
+def test_who_cuts_a_speck_is_told(speckled):
+    session, _ = speckled
+    (speck,) = session.recognition.dropped
+    (told,) = (f for f in session.process.findings if f.code == "route.dropped")
+    cutting = [o.id for o in session.process.operations if speck in o.faces]
+    assert told.where == (f"face {speck}",) and cutting
+    assert f"face {speck} by " in told.text and all(id in told.text for id in cutting)
+
+
 def test_a_group_that_a_person_deleted_is_not_cut(speckled):
     session, engine = speckled
     gone = next(f for f in session.recognition if f.attributes.get("local"))

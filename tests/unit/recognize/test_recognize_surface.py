@@ -11,6 +11,7 @@ import pytest
 
 from parts import PARTS, needs_parts
 from shaped_parts import bowl, plate, rounded_plate, torus
+from trunnion.findings import BadInput
 from trunnion.geometry.boundary import Boundary
 from trunnion.part.topology.boundary import bounding_of
 from trunnion.part.topology.identity import faces_of
@@ -284,6 +285,17 @@ def test_the_smallest_feature_size_is_a_setting() -> None:
     assert grouped_squares(80.0, 0.25, 0.3, **{"recognize.surface.smallest": 0.4}).unexplained == (
         2,
     )
+
+
+def test_a_smallest_size_that_a_person_chose_holds_on_a_small_part_too() -> None:
+    chosen = {"recognize.surface.smallest": 20.0}
+    assert grouped_squares(40.0, 12.0, 10.0, **chosen).dropped == (2, 3)
+    assert grouped_squares(0.5, 0.3, **{"recognize.surface.sliver_width": 0.16}).dropped == (2,)
+
+
+def test_limits_that_leave_nothing_are_refused_by_name() -> None:
+    with pytest.raises(BadInput, match=r"no patch is left .*recognize\.surface\.smallest"):
+        grouped_squares(40.0, 12.0, **{"recognize.surface.smallest": 100.0})
 
 
 def test_on_a_small_part_the_limits_are_a_hundredth_of_its_largest_patch() -> None:

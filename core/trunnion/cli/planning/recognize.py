@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
     add_manual_edits,
+    dropped_words,
     exit_code,
     open_session,
     part_command,
@@ -39,10 +40,14 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the features and what nothing explains."""
+    from trunnion.pipeline.planning.patches import dropped
+    from trunnion.recognize.contract import exclusive_kinds
+
     engine, session = open_session(options, "recognize")
     session = with_manual_edits(options, engine, session)
     part, found = session.part, session.recognition
     assert part is not None and found is not None
+    apart = dropped(found)
     if options.xml:
         from trunnion.store.features import write_features
 
@@ -62,6 +67,7 @@ def run(options: argparse.Namespace) -> int:
                     "faces": list(found.unexplained),
                     "area_share": found.unexplained_share,
                 },
+                "dropped": list(apart),
                 "findings": [f.as_dict() for f in session.findings()],
             }
         )
@@ -73,8 +79,10 @@ def run(options: argparse.Namespace) -> int:
         print(
             f"unexplained: {len(found.unexplained)} faces, {100 * found.unexplained_share:.2f} % of the area"
         )
+        if apart:
+            print(f"{dropped_words(apart)}: in no group, cut with the area around")
     show_findings(options, session.findings())
-    return exit_code(session.findings())
+    return exit_code(session.findings(), may_be_open=bool(exclusive_kinds(found.family)))
 
 
 def _feature_table(found: Recognition) -> str:

@@ -6,7 +6,7 @@ Runs in the reading process (`child`), because a damaged file may crash or bloat
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,8 @@ _IGES_UNITS = {
     10: "cm",
     11: "microinch",
 }
+ANY_RESULT = -1
+"""Of the kernel's search for a shape's entity: among all results, those inside others too."""
 _UNIT_WORDS = {
     "millimetre": "mm",
     "millimeter": "mm",
@@ -45,12 +47,13 @@ _UNIT_WORDS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransferResult:
-    """What the kernel read: the shape in mm, the file's unit, names and colours by face tag."""
+    """What the kernel read: the shape in mm, the file's unit, names and colours by face tag, and lines of IGES entities."""
 
     shape: Shape
     unit: str
     names: Mapping[int, str] = field(default_factory=dict)
     colours: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
+    entities: Mapping[int, int] = field(default_factory=dict)
 
 
 def read_file(file: Path, request: ReadRequest) -> Part:
@@ -92,7 +95,18 @@ def _read_iges(file: Path, request: ReadRequest) -> TransferResult:
     if reader.ReadFile(str(file)) != IFSelect_RetDone:
         raise BadInput(f"{request.file}: the IGES file can't be understood; export the part again")
     unit = _IGES_UNITS.get(reader.IGESModel().GlobalSection().UnitFlag(), "mm")
-    return _with_document(reader, reader, request, unit)
+    read = _with_document(reader, reader, request, unit)
+    return replace(read, entities=_entities(reader, faces_of(read.shape)))
+
+
+def _entities(reader: Any, faces: list[Shape]) -> dict[int, int]:
+    """Return the line in the directory of the entity that each face was made from, by tag; nothing of faces that the reader split."""
+    process, model, found = reader.WS().TransferReader(), reader.IGESModel(), {}
+    for tag, face in enumerate(faces, start=1):
+        entity = process.EntityFromShapeResult(face, ANY_RESULT)
+        if entity is not None:
+            found[tag] = model.DNum(entity)
+    return found
 
 
 def _with_document(reader: Any, plain: Any, request: ReadRequest, unit: str) -> TransferResult:
@@ -190,6 +204,7 @@ def _part(read: TransferResult, request: ReadRequest) -> Part:
         tags=body.tags,
         names=read.names,
         colours=read.colours,
+        entities=read.entities,
         findings=tuple(notes),
     )
     return Part(facts, body.shape, read.shape)

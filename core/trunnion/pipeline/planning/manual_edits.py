@@ -16,21 +16,28 @@ def with_manual_features(before: Recognition | None, found: Recognition) -> Reco
     without those that claim most of the faces of a deleted one. Faces that lose their feature become unexplained.
 
     Features of kinds that share out faces (`exclusive_kinds`) only lose the faces that a person put elsewhere, and faces that the part has
-    no more leave every one of them.
+    no more leave every one of them. None of them gets a name that a feature made by hand has, or that one had which is no more.
     """
-    if before is None or not (before.removed or any(f.by_hand for f in before.features)):
+    if before is None or not (
+        before.removed or before.retired or any(f.by_hand for f in before.features)
+    ):
         return found
     sharing = frozenset((*exclusive_kinds(before.family), *exclusive_kinds(found.family)))
     there = {*found.unexplained, *(tag for f in found.features for tag in f.tags)}
     by_hand = tuple(
         kept for f in before.features if f.by_hand for kept in _within(f, there, sharing)
     )
+    kept_names = {f.id for f in by_hand}
+    retired = (
+        *before.retired,
+        *(f.id for f in before.features if f.by_hand and f.id not in kept_names),
+    )
     taken = [set(f.tags) for f in by_hand if f.kind not in sharing] + [
         set(tags) for tags in before.removed
     ]
     others = [
         f
-        for f in _renamed(_shared_out(found.features, by_hand, sharing), by_hand, sharing)
+        for f in _renamed(_shared_out(found.features, by_hand, sharing), by_hand, retired, sharing)
         if not _claims_most(f, taken)
     ]
     kept = (*others, *by_hand)
@@ -52,6 +59,7 @@ def with_manual_features(before: Recognition | None, found: Recognition) -> Reco
         features=kept,
         findings=(*found.findings, *notes),
         removed=before.removed,
+        retired=retired,
     )
 
 
@@ -75,14 +83,19 @@ def _shared_out(
 
 
 def _renamed(
-    features: tuple[Feature, ...], by_hand: Iterable[Feature], sharing: Collection[str]
+    features: tuple[Feature, ...],
+    by_hand: Iterable[Feature],
+    retired: Iterable[str],
+    sharing: Collection[str],
 ) -> tuple[Feature, ...]:
-    """Return features without those that bear a name of one made by hand; those that share out faces get a free name instead."""
-    names = {f.id for f in by_hand}
+    """Return features without those that bear a name of one made by hand; those that share out faces get a free name instead, also of a
+    retired one."""
+    names, spent = {f.id for f in by_hand}, set(retired)
     kept = []
     for f in features:
-        if f.kind in sharing and f.id in names:
-            f = replace(f, id=free_id(f.kind, {*names, *(other.id for other in features)}))
+        if f.kind in sharing and f.id in names | spent:
+            taken = {*names, *spent, *(other.id for other in features)}
+            f = replace(f, id=free_id(f.kind, taken))
             names.add(f.id)
         if f.id not in names or f.kind in sharing:
             kept.append(f)

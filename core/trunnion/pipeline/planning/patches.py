@@ -22,8 +22,8 @@ from trunnion.recognize.contract import exclusive_kinds, sharing_families
 if TYPE_CHECKING:
     from trunnion.pipeline.engine import Engine
 
-LOCAL, REMAINING = "local", "remaining"
-"""What may be exported beside groups by their id: all local features, and all other faces of the part."""
+LOCAL, REMAINING, DROPPED = "local", "remaining", "dropped"
+"""What may be exported beside groups by their id: all local features, all other faces but what recognition dropped, and that."""
 
 
 def with_cut(
@@ -61,8 +61,9 @@ def with_local(session: Session, ids: Iterable[str], value: bool) -> Session:
 def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: str = "") -> Session:
     """Return the session with faces moved by hand to a group, or to a new one that is as local as the first face's was.
 
-    All groups that change are measured anew, those that lose their last face go. Raises `BadInput` for a face that the part doesn't have
-    or an id that no group has.
+    All groups that change are measured anew, those that lose their last face go, and so do their names: no other group gets them.
+
+    Raises `BadInput` for a face that the part doesn't have or an id that no group has.
     """
     found, moved = _recognition(session), set(faces)
     strange = sorted(moved - set(engine.context_of(session).part.tags))
@@ -82,21 +83,27 @@ def with_moved(engine: Engine, session: Session, faces: Iterable[int], group: st
     features = tuple(into if f.id == into.id else f for f in features if f.faces)
     features = features if into in features else (*features, into)
     loose = tuple(t for t in found.unexplained if t not in moved)
-    after = replace(found.with_unexplained(loose), features=features)
+    there = {f.id for f in features}
+    after = replace(
+        found.with_unexplained(loose),
+        features=features,
+        retired=(*found.retired, *(f.id for f in found.features if f.id not in there)),
+    )
     return measured_anew(replace(session, recognition=after), engine.context_of(session))
 
 
 def tags_of(session: Session, what: Sequence[str]) -> tuple[int, ...]:
-    """Return the tags that words mean: `local`, `remaining`, or ids of groups. Raises `BadInput` when they mean no face."""
+    """Return the tags that words mean: `local`, `remaining`, `dropped`, or ids of groups. Raises `BadInput` when they mean no face."""
     found = _recognition(session)
     tags: set[int] = set()
     for word in what:
         if word == LOCAL:
             tags.update(_local(found))
         elif word == REMAINING:
-            tags.update(
-                {*found.unexplained, *(t for f in found.features for t in f.tags)} - _local(found)
-            )
+            explained = {t for f in found.features for t in f.tags}
+            tags.update({*found.unexplained, *explained} - _local(found) - set(dropped(found)))
+        elif word == DROPPED:
+            tags.update(dropped(found))
         else:
             tags.update(_group(found, word).tags)
     if not what:
@@ -106,6 +113,11 @@ def tags_of(session: Session, what: Sequence[str]) -> tuple[int, ...]:
             f"{' and '.join(what)}: no face of the part belongs to it; name other groups, or call some local features"
         )
     return tuple(sorted(tags))
+
+
+def dropped(found: Recognition) -> tuple[int, ...]:
+    """Return the tags of the patches that are in no group because they are too narrow or too small; none of families without groups."""
+    return found.dropped if exclusive_kinds(found.family) else ()
 
 
 def export(engine: Engine, session: Session, what: Sequence[str], path: str | Path) -> int:
@@ -154,7 +166,7 @@ def _new_group(found: Recognition, face: int) -> Feature:
     kind = exclusive_kinds(found.family)[0]
     local = from_group is not None and bool(from_group.attributes.get("local"))
     return Feature(
-        id=free_id(kind, {f.id for f in found.features}),
+        id=free_id(kind, {*found.retired, *(f.id for f in found.features)}),
         kind=kind,
         faces=(),
         attributes={"local": local},

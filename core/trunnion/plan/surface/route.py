@@ -57,7 +57,7 @@ from trunnion.plan.settings import RouteSettings
 from trunnion.plan.surface.land_route import FinishedLands, plan_lands
 from trunnion.plan.surface.plan_state import SurfacePlanState, face_name
 from trunnion.plan.surface.settings import SurfaceRouteSettings
-from trunnion.plan.surface.slivers import slivers_of, with_slivers
+from trunnion.plan.surface.slivers import sliver_findings, slivers_of, with_slivers
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
@@ -206,14 +206,14 @@ def _add_slivers(state: SurfacePlanState) -> None:
     mine = (slivers_of(state.recognition) | state.unsampled) & set(part.tags) - set(
         blank_faces(part, state.space.blank)
     )
-    state.operations, remaining = with_slivers(
-        state.operations, mine, part.graph(), state.space.skin
-    )
+    before = state.operations
+    state.operations, remaining = with_slivers(before, mine, part.graph(), state.space.skin)
+    state.findings.extend(sliver_findings(before, state.operations))
     if remaining:
         state.findings.append(
             warning(
                 "route.not-planned",
-                f"{len(remaining)} small faces lie beside nothing that is cut",
+                f"{len(remaining)} patches in no group lie beside nothing that is cut",
                 *face_tags(remaining),
                 remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves",
             )

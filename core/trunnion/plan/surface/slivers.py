@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from trunnion import tolerance
+from trunnion.findings import Finding, face_tags, info
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Recognition
@@ -17,9 +18,34 @@ WHOLE = ("semi", "finish", "rest_finish")
 
 def slivers_of(recognition: Recognition) -> frozenset[int]:
     """Return the tags of the faces that recognition left out of every feature by itself; what a person deleted is not to be cut."""
-    return frozenset(recognition.unexplained) - {
-        tag for tags in recognition.removed for tag in tags
-    }
+    return frozenset(recognition.dropped)
+
+
+def sliver_findings(before: Sequence[Operation], after: Sequence[Operation]) -> tuple[Finding, ...]:
+    """Return what is told of the patches that operations have gained: which operations cut each, and that none was chosen for it."""
+    cut: dict[int, list[str]] = {}
+    for old, new in zip(before, after, strict=True):
+        for tag in new.faces[len(old.faces) :]:
+            cut.setdefault(tag, []).append(new.id)
+    if not cut:
+        return ()
+    patches = "1 patch" if len(cut) == 1 else f"{len(cut)} patches"
+    return (
+        info(
+            "route.dropped",
+            f"{patches} in no group: cut with the neighbour across the longest edge, by cutters that others chose: {_by_operation(cut)}",
+            *face_tags(cut),
+            remedy="lower recognize.surface.smallest and recognize.surface.sliver_width to plan them by themselves",
+        ),
+    )
+
+
+def _by_operation(cut: Mapping[int, Sequence[str]]) -> str:
+    """Return in words which faces the same operations cut, by the ids of each face's operations."""
+    together: dict[str, list[str]] = {}
+    for tag, ids in sorted(cut.items()):
+        together.setdefault(", ".join(ids), []).append(f"face {tag}")
+    return "; ".join(f"{', '.join(faces)} by {ids}" for ids, faces in together.items())
 
 
 def with_slivers(

@@ -20,9 +20,6 @@ from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
 from trunnion.recognize.surface.suitability import suitability
 
-SMALL_PART = 0.01
-"""Share of the largest patch's size that limits on small patches don't exceed: a part of half a millimetre has patches of its own."""
-
 
 class SurfaceFamily:
     """Blades, small impellers and other parts of free-form patches with local features on them."""
@@ -56,11 +53,15 @@ class SurfaceFamily:
         sizes = _sizes(graph, bounded, settings)
         progress.at(0.5, "grouping patches")
         size = _size(sizes, settings)
-        most = SMALL_PART * float(size.max())
-        sliver_width, smallest = min(settings.sliver_width, most), min(settings.smallest, most)
+        sliver_width, smallest = settings.limits(float(size.max()))
         sliver = sizes.width < sliver_width
         small = ~sliver & (size < smallest)
         rows = np.flatnonzero(~sliver & ~small)
+        if not len(rows):
+            raise BadInput(
+                f"no patch is left to be grouped: all are narrower than {sliver_width:g} mm (recognize.surface.sliver_width) or below "
+                f"{smallest:g} mm (recognize.surface.smallest); the largest is {size.max():.3g} mm across"
+            )
         if settings.grouping == ALIGNED:
             groups = aligned_groups(
                 sizes,
@@ -174,7 +175,7 @@ def _findings(
             f"{len(tags)} {are} {words} and {join} no group: {size[rows].min():.3g} to {size[rows].max():.3g} mm across, "
             f"{area:.3g} mm2, {area / float(sizes.area.sum()):.2%} of the area",
             *face_tags(tags),
-            remedy=f"nothing needs to be done: they are machined with the area around them; lower recognize.surface.{limit} to "
-            "group them",
+            remedy=f"nothing needs to be done: they are machined with the area around them and exported by the word dropped alone; "
+            f"lower recognize.surface.{limit} to group them",
         ),
     )

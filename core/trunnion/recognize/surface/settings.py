@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from trunnion.settings import setting, settings
 
+SLIVER_WIDTH, SMALLEST = 0.05, 0.5
+"""mm: the limits on small patches that nobody has changed."""
+SMALL_PART = 0.01
+"""Share of the largest patch's size that these limits don't exceed: a part of half a millimetre has patches of its own."""
 INVARIANT, ALIGNED = "invariant", "aligned"
 EXACT, POINTS = "exact", "points"
 
@@ -52,20 +56,31 @@ class SurfaceSettings:
         help="A group is a local feature when its size over the largest patch's is below this.",
     )
     sliver_width: float = setting(
-        0.05,
+        SLIVER_WIDTH,
         unit="mm",
         low=0.0,
         high=10.0,
         label="Sliver",
         help="A patch narrower than this on average (twice its area over its boundary) joins no group. "
-        "At most 1 % of the largest patch's size.",
+        "As it stands, at most 1 % of the largest patch's size.",
     )
     smallest: float = setting(
-        0.5,
+        SMALLEST,
         unit="mm",
         low=0.0,
         high=1000.0,
         label="Smallest feature size",
         help="A patch whose feature size is below this joins no group and is machined with the area around it. "
-        "At most 1 % of the largest patch's size.",
+        "As it stands, at most 1 % of the largest patch's size.",
     )
+
+    def limits(self, largest: float) -> tuple[float, float]:
+        """Return the width of slivers and the smallest size (mm) on a part by the size of its largest patch: what a person chose
+        holds as it is."""
+        most = SMALL_PART * largest
+        return (
+            min(self.sliver_width, most)
+            if self.sliver_width == SLIVER_WIDTH
+            else self.sliver_width,
+            min(self.smallest, most) if self.smallest == SMALLEST else self.smallest,
+        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSplitter, QTableWidget, QVBoxLayout, QWidget
 
+from trunnion.recognize.surface.accuracy import EXACT, REPAIR
 from trunnion_gui.document import Document
 from trunnion_gui.families.surface.jobs import PatchJobs
 from trunnion_gui.families.surface.requests import Accuracy
@@ -13,9 +14,6 @@ from trunnion_gui.look.words import duration, grouped
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.chart import Chart, ChartCurve
 from trunnion_gui.widgets.panel import rule
-
-_REPAIR = -1
-"""Stands for the points that the paper's repair puts on an edge, as many as its length requires."""
 
 
 class AccuracyDock(QWidget):
@@ -62,7 +60,7 @@ class AccuracyDock(QWidget):
             self.table,
             [
                 (
-                    tr("the paper's repair") if r.on_edge == _REPAIR else str(r.on_edge),
+                    row_words(r.on_edge),
                     grouped(r.points),
                     per_cent(r.largest),
                     per_cent(r.mean),
@@ -83,8 +81,8 @@ class AccuracyDock(QWidget):
                 "The file's boundary curves are within {error} of their surfaces (face {face})."
             ).format(error=f"{1000.0 * found.boundary:.3g} µm", face=found.face)
         )
-        spread = [r for r in rows if r.on_edge != _REPAIR]
-        repair = next((100.0 * r.largest for r in rows if r.on_edge == _REPAIR), None)
+        spread = [r for r in rows if r.on_edge not in (REPAIR, EXACT)]
+        repair = next((100.0 * r.largest for r in rows if r.on_edge == REPAIR), None)
         self.chart.show_curves(
             tr("points on an edge"),
             [str(r.on_edge) for r in spread],
@@ -94,6 +92,13 @@ class AccuracyDock(QWidget):
             ChartCurve(tr("time"), tuple(r.seconds for r in spread), "s"),
             (repair, tr("the paper's repair")) if repair is not None else None,
         )
+
+
+def row_words(on_edge: int) -> str:
+    """Return what points of a row there are on an edge."""
+    if on_edge == EXACT:
+        return tr("exact")
+    return tr("the paper's repair") if on_edge == REPAIR else str(on_edge)
 
 
 def per_cent(share: float) -> str:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from trunnion.geometry.cut import Cut
 from trunnion.model.session import Session
 from trunnion.progress import Progress
+from trunnion.units import timed
 from trunnion_gui.worker.drawing import DrawnMesh, drawing_of
 from trunnion_gui.worker.requests import SendEvent, SessionState, state_of, writes_files
+
+if TYPE_CHECKING:
+    from trunnion.plan.freeform.estimate.efficiency import EfficiencyEstimate
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +27,8 @@ class PatchedSession:
 
 @dataclass(frozen=True, slots=True)
 class ErrorRow:
-    """How exact the feature sizes are with so many points on each edge (-1: the paper's repair): errors as shares, wall time in s."""
+    """How exact the feature sizes are with so many points on each edge (-1: the paper's repair, -2: the exact boxes): errors as shares,
+    wall time in s."""
 
     on_edge: int
     points: int
@@ -66,6 +72,29 @@ class EstimatedTimes:
     gain: float
     saving: float
     is_measured: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CutterFigures:
+    """What a person types of a cutter, as words: its areas, and the area (mm2) that it finished in a measured time."""
+
+    areas: str = ""
+    measured_area: str = ""
+    measured_time: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class EfficiencyFigures:
+    """What a large cutter for some areas gains over the small one for all: s with both and with the small one alone, shares."""
+
+    name: str
+    title: str
+    large: CutterFigures
+    small: CutterFigures
+    seconds: float
+    seconds_alone: float
+    gain: float
+    saving: float
 
 
 def cut(
@@ -167,4 +196,56 @@ def estimate(
         found.gain,
         found.saving,
         bool(session.paths),
+    )
+
+
+def example_efficiencies(
+    _engine: Any, _progress: Progress, _send_event: SendEvent
+) -> tuple[EfficiencyFigures, ...]:
+    """Return the estimates that are shipped."""
+    from trunnion.plan.freeform.estimate.efficiency_file import example_estimates
+
+    return tuple(map(_figures, example_estimates()))
+
+
+def read_efficiencies(
+    _engine: Any, _progress: Progress, _send_event: SendEvent, path: str
+) -> tuple[EfficiencyFigures, ...]:
+    """Return the estimates of a file."""
+    from trunnion.plan.freeform.estimate.efficiency_file import read_estimates
+
+    return tuple(map(_figures, read_estimates(Path(path))))
+
+
+def efficiency(
+    _engine: Any,
+    _progress: Progress,
+    _send_event: SendEvent,
+    large: CutterFigures,
+    small: CutterFigures,
+) -> EfficiencyFigures:
+    """Return the gain that figures give which a person typed."""
+    from trunnion.plan.freeform.estimate.efficiency_file import typed_estimate
+
+    return _figures(typed_estimate(asdict(large), asdict(small)))
+
+
+def _figures(found: EfficiencyEstimate) -> EfficiencyFigures:
+    large, small = (
+        CutterFigures(
+            areas=", ".join(map(repr, cutter.areas)),
+            measured_area=repr(cutter.rate.area),
+            measured_time=timed(cutter.rate.time),
+        )
+        for cutter in (found.large, found.small)
+    )
+    return EfficiencyFigures(
+        found.name,
+        found.title,
+        large,
+        small,
+        found.seconds,
+        found.seconds_alone,
+        found.gain,
+        found.saving,
     )

@@ -21,6 +21,7 @@ from trunnion_gui.families.surface.accuracy import AccuracyDock
 from trunnion_gui.families.surface.areas import AreasBlock
 from trunnion_gui.families.surface.commands import add_commands
 from trunnion_gui.families.surface.cutting import CutBar
+from trunnion_gui.families.surface.efficiency import EfficiencyBlock
 from trunnion_gui.families.surface.estimate import EstimateSource
 from trunnion_gui.families.surface.export import ExportDialog
 from trunnion_gui.families.surface.groups import GROUP, is_local
@@ -30,6 +31,7 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.menus.window_access import WindowAccess
+from trunnion_gui.widgets.layout import stacked
 
 
 class SurfaceView(FamilyView):
@@ -46,6 +48,8 @@ class SurfaceView(FamilyView):
         self.tools = PatchTools(document, self.jobs)
         self.estimate = EstimateSource(document)
         self.areas, self.accuracy = AreasBlock(document), AccuracyDock(document, self.jobs)
+        self.efficiency = EfficiencyBlock(document)
+        self.optimizing = stacked(self.areas, self.efficiency)
         self.estimate.arrived.connect(self.areas.show_estimate)
         self.tools.cut_wanted.connect(self.begin_cut)
 
@@ -101,10 +105,11 @@ class SurfaceView(FamilyView):
             self.cutting.begin(face, by_plane)
 
     def blocks(self) -> dict[str, QWidget]:
-        return {"optimize": self.areas}
+        return {"optimize": self.optimizing}
 
     def docks(self) -> tuple[Dock, ...]:
         return (Dock("accuracy", tr("Size error"), self.accuracy),)
 
     def use_theme(self, theme: Theme) -> None:
         self.accuracy.use_theme(theme)
+        self.efficiency.use_theme(theme)
