@@ -440,7 +440,7 @@ def session() -> Session:
         "verify": StepRecord(key="v1", seconds=2.0, findings=verdict().findings),
     }
     slower = Fix(kind="feed", operation="wall-01", reason="verify.power", amount=0.8)
-    score = PlanScore(errors=1, harms=0, unfinished=0.25, remarks=1, time=95.5)
+    score = PlanScore(errors=1, is_short=False, harms=0, unfinished=0.25, remarks=1, time=95.5)
     repairs = (
         RepairRound(
             number=1,

@@ -12,11 +12,13 @@ from trunnion.findings import Fix
 class PlanScore:
     """How good a plan is, the smaller the better, compared in this order.
 
-    `errors` findings that keep it from being released; `harms` collisions, rapids in stock and operations that gouge; `unfinished` share of
-    the area that can be reached and is not finished; `remarks`; `time` s at the machine.
+    `errors` findings that keep it from being released; `is_short` whether the finished share of the area is one of them: what mends a
+    harm by leaving faces uncut mends nothing; `harms` collisions, rapids in stock and operations that gouge; `unfinished` share of the
+    area that can be reached and is not finished; `remarks`; `time` s at the machine.
     """
 
     errors: int
+    is_short: bool
     harms: int
     unfinished: float
     remarks: int

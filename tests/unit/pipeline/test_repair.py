@@ -276,5 +276,11 @@ def test_every_kind_on_a_ladder_is_registered():
 
 
 def test_scores_count_errors_before_all_else():
-    best = PlanScore(errors=0, harms=9, unfinished=0.5, remarks=9, time=9e9)
-    assert best < PlanScore(errors=1, harms=0, unfinished=0.0, remarks=0, time=0.0)
+    best = PlanScore(errors=0, is_short=False, harms=9, unfinished=0.5, remarks=9, time=9e9)
+    assert best < PlanScore(errors=1, is_short=False, harms=0, unfinished=0.0, remarks=0, time=0.0)
+
+
+def test_a_harm_mended_by_leaving_faces_uncut_is_not_mended():
+    collides = PlanScore(errors=1, is_short=False, harms=9, unfinished=0.002, remarks=9, time=9e9)
+    uncut = PlanScore(errors=1, is_short=True, harms=0, unfinished=0.1, remarks=0, time=0.0)
+    assert collides < uncut

@@ -158,8 +158,10 @@ def test_faces_that_an_upright_tool_does_harm_at_are_finished_by_a_leaning_one(d
     leaning = next(p for p in fixed.paths if p.operation == finish.id)
     assert (leaning.path.axis[:, 2] < 0.999).any()
     assert fixed.verdict.collisions == 0 and fixed.verdict.rapids_in_stock == 0
+    wary = engine.with_fix(fixed, fix)
+    assert wary.process.operation(finish.id).choices["surface.point.wary"] is True
     with pytest.raises(BadInput, match="follow the remedy by hand"):
-        engine.with_fix(fixed, fix)
+        engine.with_fix(wary, fix)
     fixed_axis = engine.with_choices(session, {"setup.machine": "Mill 1200"})
     with pytest.raises(BadInput, match="follow the remedy by hand"):
         engine.with_fix(engine.run(fixed_axis, "route"), fix)

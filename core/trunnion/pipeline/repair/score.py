@@ -7,6 +7,8 @@ from trunnion.model.repair import PlanScore
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
 
+SHORT = "verify.coverage"
+"""Code of the finding that too little of the area is finished."""
 DECIMALS = 6
 """Decimals of a share of area that count: what differs less is the sums' rounding."""
 
@@ -19,6 +21,7 @@ def score_of(session: Session) -> PlanScore:
     found = session.findings()
     return PlanScore(
         errors=sum(f.severity is Severity.ERROR for f in found),
+        is_short=any(f.code == SHORT and f.severity is Severity.ERROR for f in found),
         harms=verdict.collisions
         + verdict.rapids_in_stock
         + sum(o.outcome is Outcome.FAILED for o in verdict.operations),

@@ -68,8 +68,8 @@ def _outline(space: SurfaceSpace, tags: tuple[int, ...], bottom: float, top: flo
         return outline
     # What is grown stands out of the walls a little: there their sections say where they are.
     walls = region_of(shapely.buffer(_plan_of(skin, tags), 2.0 * apart, quad_segs=QUARTER))
-    standing_out = beyond.offset(2.0 * apart).intersect(whole).minus(walls)
-    return outline.union(standing_out).holes_filled()
+    overhang = beyond.offset(2.0 * apart).intersect(whole).minus(walls)
+    return outline.union(overhang).holes_filled()
 
 
 def _of_sections(space: SurfaceSpace, tags: tuple[int, ...], bottom: float, top: float) -> Region:

@@ -202,10 +202,23 @@ class _Blocks:
         self._rapid(np.append(position[:2], height), UPRIGHT)
 
     def _rise(self, height: float) -> None:
-        """Feed up to a height at most as far as something hangs over beside the tool: what was left there stands in its way."""
+        """Feed up to a height at most as far as something hangs over beside the tool, or a wall stands beside it that it could not be led
+        off: what was left there stands in its way."""
         top = self._under(self.here)
+        if self._led_straight_up():
+            top = max(top, self._air.stock().height(self.here, self.here, self._tool.radius))
         if top > self.here[2]:
             self.feed(np.append(self.here[:2], min(top, height))[None], UPRIGHT, Mark.LEAD)
+
+    def _led_straight_up(self) -> bool:
+        """Return whether the tool was just led straight up off a pass: beside something steep, where it had no space for an arc."""
+        tips, axis, _, _, mark = self._parts[-1]
+        return (
+            mark is Mark.LEAD
+            and bool(tips[-1, 2] - tips[0, 2] > tolerance.SHORT_MOVE)
+            and bool(np.ptp(tips[:, :2], axis=0).max() < SAME)
+            and _is_upright(axis[-1])
+        )
 
     def _down(self, position: Floats) -> None:
         """Come down upright: at rapid as far as the stock allows, then at feed, slowly where there is material."""

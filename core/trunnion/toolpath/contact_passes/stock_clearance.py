@@ -77,17 +77,23 @@ class StockClearance:
         return both
 
     def queries(
-        self, query_for: Callable[[Tool], ClearanceQuery], query: ClearanceQuery
+        self,
+        query_for: Callable[[Tool], ClearanceQuery],
+        query: ClearanceQuery,
+        *,
+        wary: bool = False,
     ) -> tuple[ClearanceQuery, ...]:
         """Return what poses are asked for, the safest first: clear of stock all over the part and of what stands beyond; of less on the
         part; of what stands beyond alone; of the part, which `query` tells.
 
         The last only where nothing is left on the faces: what leaves an allowance leaves out what no axis comes to safely, and finishing
-        finds what other leaning tools have cut meanwhile, which nobody keeps."""
+        finds what other leaning tools have cut meanwhile, which nobody keeps. `wary` leaves out both that ask for nothing on the part."""
         found = [
             self.with_stock(query_for(thickened(self.tool, t)))
             for t in sorted({self.thickness, LEAST_STOCK}, reverse=True)
         ]
+        if wary:
+            return tuple(found)
         if not self.has_stock:
             return (*found, query)
         return (*found, self.with_stock(query), *(() if self.drive.allowance > 0.0 else (query,)))

@@ -298,7 +298,7 @@ def _passes(
     area = DropSurface.of(drive.skin.points, drive.skin.triangles[on_area])
     strip = OverrunStrip.of(drive.skin, drive.faces, planes.beyond)
 
-    def touched(plan: Floats, share: Progress) -> tuple[Bools, Bools, Ints]:
+    def contacts_of(plan: Floats, share: Progress) -> tuple[Bools, Bools, Ints]:
         z, facet, contact = drive.skin.drop.contacts(plan, pieces, lowest, share)
         found = (facet >= 0) & on_area[np.maximum(facet, 0)]
         # On the rim either of two faces may be named.
@@ -310,7 +310,7 @@ def _passes(
 
     def contacted(plane: Ints, run: Floats, share: Progress) -> tuple[Bools, Bools]:
         plan = run[:, None] * planes.along + planes.at[plane, None] * planes.across
-        found, others, _ = touched(plan, share)
+        found, others, _ = contacts_of(plan, share)
         # Past the area the cutter rolls over its rim.
         within = (run >= planes.reach[plane, 0]) & (run <= planes.reach[plane, 1])
         return np.asarray(found & within), others
@@ -341,7 +341,7 @@ def _passes(
     tips = follow(drive.skin.drop, pieces, lines, settings.chord, lowest, progress.part(0.4, 0.9))
     count = np.cumsum([len(t) for t in tips])[:-1]
     plan = np.concatenate([np.zeros((0, 2)), *(t[:, :2] for t in tips)])
-    found, others, facet = touched(plan, progress.part(0.9, 1.0))
+    found, others, facet = contacts_of(plan, progress.part(0.9, 1.0))
     normals = np.split(_facing(drive.skin, facet), count)
     lift = drive.allowance * UPRIGHT
     return [

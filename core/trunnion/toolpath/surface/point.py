@@ -173,6 +173,11 @@ class PointSettings:
         label="Safety distance",
         help="How far rapids stay from the blank.",
     )
+    wary: bool = setting(
+        False,
+        label="Wary of stock",
+        help="Leave out what the tool comes to only where its shank or holder may meet stock that earlier tools left on the part.",
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -236,7 +241,7 @@ def point(
             )
     thickness = max(STOCK_SHARE * data.depth, LEAST_STOCK)
     around = StockClearance.of(drive, tool, thickness)
-    queries = around.queries(drive.query_for, query)
+    queries = around.queries(drive.query_for, query, wary=settings.wary)
     done = PointMilledPasses(passes=(), rest=contact_lines, remaining=1.0)
     for n, free in enumerate(queries):
         more = milled(

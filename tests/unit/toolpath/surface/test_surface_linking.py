@@ -159,3 +159,13 @@ def test_a_pass_that_begins_by_turning_about_its_tip_has_leads_along_its_way() -
         normal=np.tile(UPRIGHT, (2, 1)),
     )
     assert made([spot])[0].position[0, :2] == pytest.approx([5.0, 10.0])
+
+
+def test_off_a_pass_that_ends_at_a_steep_wall_the_tool_is_fed_up_past_what_stands_there() -> None:
+    wall = grid(lambda x, y: np.clip(40.0 * (x - 15.0), 0.0, 12.0), n=120)
+    path, drive, _ = made([straight((5, 10, 0), (11.9, 10, 0))], drive=driven(wall, top=13.0))
+    up = path.position[-2:]
+    assert up[0, 2] == pytest.approx(drive.high[2])
+    assert path.motion[-2:].tolist() == [Motion.LINE, Motion.RAPID]
+    level, _, _ = made([straight((5, 10, 0), (11.9, 10, 0))])
+    assert level.position[-2, 2] == pytest.approx(MANNER.lead_radius)

@@ -142,6 +142,7 @@ def test_poses_are_asked_for_from_the_safest_to_those_clear_of_the_part_alone():
     assert [bool(q(tip, into)[0]) for q in around.queries(query_for, bare)] == [False] * 3
     nothing = replace(whole, points=np.zeros((0, 3)))
     assert len(clearance(nothing).queries(query_for, bare)) == 3
+    assert len(clearance(whole).queries(query_for, bare, wary=True)) == 2
 
 
 def test_a_tool_goes_out_at_feed_until_it_has_left_the_stock():
