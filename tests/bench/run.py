@@ -130,6 +130,7 @@ def cases(folder: Path, quick: bool) -> dict[str, Callable[[], Iterator[Figure]]
     from cases import contact, graph, recognition, roughing, whole_line
     from drop import drop
     from proof import PROOF
+    from released import released
 
     path = unpacked(folder)
     panel = {
@@ -142,7 +143,10 @@ def cases(folder: Path, quick: bool) -> dict[str, Callable[[], Iterator[Figure]]
     }
     return {
         **{name: partial(case, path, folder, compared) for name, case in panel.items()},
-        **{name: partial(_rows, case, quick) for name, case in {**PROOF, "drop": drop}.items()},
+        **{
+            name: partial(_rows, case, quick)
+            for name, case in {**PROOF, "drop": drop, "released": released}.items()
+        },
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from seeded.blades import blade
+from seeded.blades import blade, fan
 from trunnion import tolerance
 from trunnion.findings import Severity
 from trunnion.pipeline import Engine
@@ -13,10 +13,10 @@ pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
 CHOICES = {"setup.machine": "Trunnion 650", "surface.scallop": 0.02}
 
 
-@pytest.mark.parametrize("seed", [0])
-def test_a_blade_in_a_trough_is_released(seed, tmp_path):
+@pytest.mark.parametrize("part", [blade, fan])
+def test_a_five_axis_part_is_released(part, tmp_path):
     engine = Engine()
-    session = engine.open(blade(seed).written(tmp_path))
+    session = engine.open(part(0).written(tmp_path))
     session = engine.run(engine.with_choices(session, CHOICES))
     verdict = session.verdict
     errors = [str(f) for f in session.findings() if f.severity is Severity.ERROR]
