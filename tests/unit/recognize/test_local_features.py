@@ -108,6 +108,18 @@ def test_the_faces_of_one_boss_are_judged_together_and_equal_ones_elsewhere_are_
     assert sorted((len(f.tags), f.attributes["local"]) for f in ends) == [(2, False), (2, True)]
 
 
+def test_a_post_that_holds_two_plates_together_is_no_local_feature() -> None:
+    plate = cq.Workplane("XY").box(30.0, 30.0, 6.0)
+    post = cq.Workplane("XY").circle(6.0).extrude(30.0)
+    spool = plate.translate((0, 0, 3)).union(post).union(plate.translate((0, 0, 29)))
+    found = recognised(read(spool.val().wrapped))
+    assert not local_of(found)
+    assert told(found) == (
+        "no local feature is proposed: connected faces measure 23.3 to 42.8 mm, and what is smaller by a gap is more than 33 % of the "
+        "area or holds the rest together"
+    )
+
+
 def test_a_finding_names_the_gap() -> None:
     assert told(recognised(beam_with_a_boss())) == (
         "sizes of connected faces jump from 12.0 to 80.8 mm: everything below is proposed as local, 5 faces in 1 cluster, "

@@ -27,13 +27,14 @@ class FaceClusters:
 
     cluster (n,) the number of the cluster of each face row; size (c,) the largest distance of two boundary points of a cluster, mm, what
     carries all others as large as the largest; together (c,) the same, but of fillets that of the smallest other cluster they join; area
-    (c,) mm2.
+    (c,) mm2; fillet (n,) whether a face is of a fillet.
     """
 
     cluster: Ints
     size: Floats
     together: Floats
     area: Floats
+    fillet: Bools
 
 
 def clusters_of(graph: FaceGraph, sizes: PatchSizes, hollow: Floats) -> FaceClusters:
@@ -55,7 +56,8 @@ def clusters_of(graph: FaceGraph, sizes: PatchSizes, hollow: Floats) -> FaceClus
         cluster=cluster,
         size=size,
         together=_with_feet(graph, fillet & ~hub, cluster, size),
-        area=np.bincount(cluster, graph.area),
+        area=np.asarray(np.bincount(cluster, graph.area), dtype=np.float64),
+        fillet=fillet & ~hub,
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.findings import Finding, face_tags, info
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.recognize.surface.clusters import FaceClusters, clusters_of, components
 from trunnion.recognize.surface.size import PatchSizes
@@ -43,8 +43,8 @@ class LocalProposal:
         if not self.local.any():
             return info(
                 "surface.local",
-                f"no local feature is proposed: sizes of connected faces run from {self.below:.1f} to {self.above:.1f} mm without a gap "
-                f"that has less than {percent(MINORITY)} of the area below it",
+                f"no local feature is proposed: connected faces measure {self.below:.1f} to {self.above:.1f} mm, and what is smaller by "
+                f"a gap is more than {percent(MINORITY)} of the area or holds the rest together",
                 remedy=remedy,
             )
         tags = (np.flatnonzero(self.local) + 1).tolist()
@@ -80,15 +80,32 @@ def _parted(graph: FaceGraph, found: FaceClusters, by: Floats) -> LocalProposal:
     order = real[np.argsort(-by[real], kind="stable")]
     size, area = by[order], found.area[order]
     kept = natural_break(size, area)
-    local = np.isin(found.cluster, order[kept:]) & (graph.area > 0.0)
-    a, b = graph.edge_face[local[graph.edge_face].all(axis=1)].T
+    small = np.isin(found.cluster, order[kept:]) & (graph.area > 0.0)
+    piece = _pieces(graph, small)
+    local = small & ~np.isin(piece, _bridges(graph, small, piece, found.fillet))
     return LocalProposal(
         local=local,
-        clusters=len(np.unique(components(len(graph), a, b)[local])),
-        share=float(area[kept:].sum() / area.sum()),
+        clusters=len(np.unique(piece[local])),
+        share=float(graph.area[local].sum() / graph.area.sum()),
         above=float(size[kept - 1] if kept < len(size) else size[0]),
         below=float(size[kept] if kept < len(size) else size[-1]),
     )
+
+
+def _pieces(graph: FaceGraph, small: Bools) -> Ints:
+    """Return the number (n,) of the piece that each face is in: connected faces that are all small, or none of them."""
+    a, b = graph.edge_face[small[graph.edge_face[:, 0]] == small[graph.edge_face[:, 1]]].T
+    return components(len(graph), a, b)
+
+
+def _bridges(graph: FaceGraph, small: Bools, piece: Ints, fillet: Bools) -> Ints:
+    """Return the numbers of small pieces that hold larger ones together: a post between two plates, a hub between blades. Fillets join what
+    meets without them."""
+    a, b = np.concatenate([graph.edge_face, graph.edge_face[:, ::-1]]).T
+    met = small[a] & ~small[b]
+    pairs = np.unique(np.column_stack([piece[a[met]], piece[b[met]]]), axis=0)
+    held, count = np.unique(pairs[:, 0], return_counts=True)
+    return held[(count > 1) & np.isin(held, piece[small & ~fillet])]
 
 
 def natural_break(size: Floats, area: Floats) -> int:
