@@ -50,3 +50,16 @@ def scored(name: str, file: Path, found: Recognition, move: Move = list) -> dict
     )
     assert not faults
     return dict(scorer.score(want, items, lost))
+
+
+def faces_by_kind(family: str, name: str, file: Path) -> dict[str, set[int]]:
+    """Return the tags of a file's faces by the kinds of features that the truth of a part has them in."""
+    assert PARTS is not None
+    scorer = _scorer()
+    truth = json.loads((PARTS / family / f"{name}.truth.json").read_text())
+    items, lost = scorer.truth_items(truth, scorer.Locator(scorer.read_faces(file)), 1e-3)
+    assert not lost
+    found: dict[str, set[int]] = {}
+    for item in items:
+        found.setdefault(item.kind, set()).update(item.faces)
+    return found

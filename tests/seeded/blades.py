@@ -1,4 +1,4 @@
-"""Random five-axis parts: a twisted blade that stands in a trough, and a fan of blades that stand out from a hub.
+"""Random five-axis parts: a twisted blade that stands in a trough, and fans of blades that stand out from a hub, some with splitters.
 
 What is random is what drawings differ in: count, chord, thickness, height, lean, twist and bow of blades, root fillets, and the sizes of
 what carries them. Both are milled in one setup on a machine with rotary axes: roots and gaps are wide enough for balls of a catalogue.
@@ -6,14 +6,14 @@ what carries them. Both are milled in one setup on a machine with rotary axes: r
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import cos, hypot, radians, sin, tan
 from random import Random
 
 import cadquery as cq
 
-from seeded.parts import Seeded
+from seeded.parts import Seeded, placed
 
 STATIONS = 7
 """Points on each side of a section."""
@@ -23,6 +23,8 @@ ON = 2e-2
 """mm: how near an edge lies to what a blade stands on to be its root."""
 Spot = tuple[float, float]
 """A point of a section's plane."""
+Drawn = tuple[cq.Workplane, float, Mapping[str, int]]
+"""A drawn part, the radius of its roots (mm, 0 where they are sharp), and how many features of each kind it has."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,23 +70,24 @@ def fan(seed: int) -> Seeded:
     return _first_valid(f"fan {seed}", _fan_drawn, f"fan-{seed:02d}")
 
 
-def _first_valid(
-    name: str, drawn: Callable[[Random], tuple[cq.Workplane, float, int]], file: str
-) -> Seeded:
+def split_fan(seed: int) -> Seeded:
+    """Return a hub with blades and splitters in every gap or in every other one, roots sharp or rounded, lying anywhere."""
+    return _first_valid(f"split fan {seed}", _split_fan_drawn, f"split-fan-{seed:02d}")
+
+
+def _first_valid(name: str, drawn: Callable[[Random], Drawn], file: str) -> Seeded:
     for number in range(MOST_DRAWS):
         try:
-            shape, foot, count = drawn(Random(f"{name}, draw {number}"))
+            shape, foot, counts = drawn(Random(f"{name}, draw {number}"))
         except Exception as reason:
             del reason
             continue
         if shape.val().isValid() and len(shape.solids().vals()) == 1:
-            return Seeded(
-                file, shape.solids().val().wrapped, "mm", {"blade": count}, smallest_radius=foot
-            )
+            return Seeded(file, shape.solids().val().wrapped, "mm", counts, smallest_radius=foot)
     raise ValueError(f"{name}: {MOST_DRAWS} draws gave no valid solid")
 
 
-def _blade_drawn(draw: Random) -> tuple[cq.Workplane, float, int]:
+def _blade_drawn(draw: Random) -> Drawn:
     chord, height = draw.uniform(22.0, 26.0), draw.uniform(16.0, 19.0)
     thickness, camber = draw.uniform(3.0, 3.6), draw.uniform(1.0, 2.0)
     lean, twist = draw.uniform(6.0, 12.0), draw.uniform(10.0, 20.0)
@@ -113,36 +116,74 @@ def _blade_drawn(draw: Random) -> tuple[cq.Workplane, float, int]:
     return (
         _footed(part, foot, lambda p: abs(hypot(p.y, p.z - radius) - radius), 0.4 * chord + 4.0),
         foot,
-        1,
+        {"blade": 1},
     )
 
 
-def _fan_drawn(draw: Random) -> tuple[cq.Workplane, float, int]:
+def _fan_drawn(draw: Random) -> Drawn:
     count = draw.choice((5, 6, 6, 7))
     hub = (1.9 + 0.1 * draw.random()) * count + 2.5
     radius, chord = hub + draw.uniform(14.0, 17.0), draw.uniform(14.0, 16.0)
     height, foot = chord + 7.0, 2.0
     pitch, twist = draw.uniform(62.0, 70.0), draw.uniform(4.0, 10.0)
     thickness, camber = draw.uniform(3.0, 3.4), draw.uniform(0.4, 1.0)
-    away = [hub - 5.0, 0.5 * (hub + radius), radius + 3.0]
-    one = _lofted(
-        "YZ",
-        away,
-        [
-            Section(
-                chord=chord,
-                thickness=thickness,
-                camber=camber,
-                angle=pitch - twist * (r - hub) / (radius - hub),
-                middle=(0.0, 0.5 * height),
-            )
-            for r in away
-        ],
-    ).intersect(cq.Workplane("XY").circle(radius).extrude(height))
+    section = Section(
+        chord=chord, thickness=thickness, camber=camber, angle=pitch, middle=(0.0, 0.5 * height)
+    )
+    one = _stood_out(section, hub, radius, height, twist)
     part = cq.Workplane("XY").circle(hub).extrude(height)
     for k in range(count):
         part = part.union(one.rotate((0, 0, 0), (0, 0, 1), 360.0 * k / count))
-    return _footed(part, foot, lambda p: abs(hypot(p.x, p.y) - hub), radius), foot, count
+    return _on_hub(part, hub, radius, foot), foot, {"blade": count}
+
+
+def _split_fan_drawn(draw: Random) -> Drawn:
+    count, every = draw.choice(((4, 1), (5, 1), (6, 1), (7, 1), (6, 2), (8, 2)))
+    hub, chord = draw.uniform(3.2, 3.8) * count, draw.uniform(15.0, 18.0)
+    span, height = draw.uniform(1.0, 1.3) * chord, chord + 7.0
+    smaller, foot = draw.uniform(0.4, 0.65), draw.choice((0.0, 0.0, 1.0))
+    blade = Section(
+        chord=chord,
+        thickness=draw.uniform(2.0, 2.6),
+        camber=draw.uniform(0.4, 1.0),
+        angle=draw.uniform(66.0, 76.0),
+        middle=(0.0, 0.5 * height),
+    )
+    splitter = replace(
+        blade,
+        chord=smaller * chord,
+        middle=(0.0, 0.5 * height + draw.uniform(-0.5, 0.5) * (1.0 - smaller) * chord),
+    )
+    twist, turn = draw.uniform(0.0, 8.0), 360.0 / count
+    large = _stood_out(blade, hub, hub + span, height, twist)
+    small = _stood_out(splitter, hub, hub + smaller * span, height, twist)
+    part = cq.Workplane("XY").circle(hub).extrude(height)
+    for k in range(count):
+        part = part.union(large.rotate((0, 0, 0), (0, 0, 1), turn * k))
+        if k % every == 0:
+            part = part.union(small.rotate((0, 0, 0), (0, 0, 1), turn * (k + 0.5)))
+    part = _on_hub(part, hub, hub + span, foot) if foot else part
+    return (
+        cq.Workplane(placed(draw, part.solids().val())),
+        foot,
+        {"blade": count, "splitter": count // every},
+    )
+
+
+def _stood_out(
+    section: Section, hub: float, radius: float, height: float, twist: float
+) -> cq.Workplane:
+    """Return a blade along x from inside a hub out to a radius (mm), its section turned back by `twist` (degrees) on the way."""
+    away = [hub - 5.0, 0.5 * (hub + radius), radius + 3.0]
+    sections = [
+        replace(section, angle=section.angle - twist * (r - hub) / (radius - hub)) for r in away
+    ]
+    within = cq.Workplane("XY").circle(radius).extrude(height)
+    return _lofted("YZ", away, sections).intersect(within)
+
+
+def _on_hub(part: cq.Workplane, hub: float, radius: float, foot: float) -> cq.Workplane:
+    return _footed(part, foot, lambda p: abs(hypot(p.x, p.y) - hub), radius)
 
 
 def _lofted(plane: str, levels: Sequence[float], sections: Sequence[Section]) -> cq.Workplane:

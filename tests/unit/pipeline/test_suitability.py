@@ -9,6 +9,8 @@ import round_parts
 import samples
 from blockparts import terrace
 from parts import PARTS, needs_parts
+from seeded.panels import panel
+from seeded.plates import plate
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.pipeline.planning.family import Rated, ratings
@@ -84,6 +86,28 @@ def test_faces_that_enclose_no_material_are_only_grouped() -> None:
     assert graph.open_edges
     found = best(graph)
     assert found.name == "surface" and "the faces enclose no material" in found.suits.reason
+
+
+def some(count: int, *quick: int):
+    return [k if k in quick else pytest.param(k, marks=pytest.mark.long) for k in range(count)]
+
+
+@pytest.mark.parametrize("suffix", ["step", "igs"])
+@pytest.mark.parametrize("seed", some(10, 0, 5))
+def test_a_random_panel_is_a_panel_by_far(seed: int, suffix: str) -> None:
+    made = panel(seed)
+    graph = samples.read(made.shape, suffix, made.unit).graph()
+    assert best(graph).name == "panel"
+    assert SurfaceFamily().suits(graph).score < 0.25
+
+
+@pytest.mark.parametrize("suffix", ["step", "igs"])
+@pytest.mark.parametrize("seed", some(10, 0, 4))
+def test_a_random_curved_plate_is_a_part_of_curved_surfaces_by_far(seed: int, suffix: str) -> None:
+    made = plate(seed)
+    graph = samples.read(made.shape, suffix, made.unit).graph()
+    assert best(graph).name == "surface"
+    assert PanelFamily().suits(graph).score < 0.8
 
 
 @pytest.mark.parametrize("kind", [ImpellerKind(), CasingKind(), PanelFamily(), SurfaceFamily()])
@@ -168,6 +192,8 @@ SHARED = (
     ("public/impeller/laufrad_1000.stp", "impeller"),
     ("public/prismatic/control_arm.step", "panel"),
     ("public/surface/fuselage_fuse.igs", "surface"),
+    ("public/surface/rounded_plate_model1.igs", "surface"),
+    ("public/surface/propeller_blade_upper.iges", "surface"),
     ("public/surface/fillet_patch_buc50025.igs", "surface"),
 )
 

@@ -14,7 +14,8 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Bounded, Suitability
 from trunnion.recognize.surface.frame import frame_of
 from trunnion.recognize.surface.groups import aligned_groups, invariant_groups
-from trunnion.recognize.surface.kinds import GROUP, KINDS
+from trunnion.recognize.surface.kinds import GROUP, KINDS, LOCAL
+from trunnion.recognize.surface.local import LocalProposal, proposed
 from trunnion.recognize.surface.radii import PatchRadii, patch_bends
 from trunnion.recognize.surface.settings import ALIGNED, EXACT, SurfaceSettings
 from trunnion.recognize.surface.size import PatchSizes, patch_sizes
@@ -73,8 +74,10 @@ class SurfaceFamily:
         else:
             groups = invariant_groups(sizes, rows, settings.tolerance, relative=settings.relative)
         bends = patch_bends(bounded, graph, sizes)
+        proposal = _proposal(graph, sizes, bends, settings)
         features = tuple(
-            _feature(f"group-{k:02}", g, sizes, bends, settings) for k, g in enumerate(groups, 1)
+            _feature(f"group-{k:02}", g, sizes, bends, settings, proposal)
+            for k, g in enumerate(_divided(groups, sizes, proposal), 1)
         )
         apart = sliver | small
         narrow = _findings(
@@ -99,7 +102,7 @@ class SurfaceFamily:
             features=features,
             unexplained=tuple(int(t) for t in sizes.tag[apart]),
             unexplained_share=float(sizes.area[apart].sum() / sizes.area.sum()),
-            findings=(*narrow, *tiny),
+            findings=(*narrow, *tiny, *(proposal.findings() if proposal else ())),
         )
 
     def measured(
@@ -108,9 +111,10 @@ class SurfaceFamily:
         """Return the groups with sizes that fit their faces; whether those made or changed by hand are local stays as a person said."""
         sizes = _sizes(graph, part, settings)
         bends = patch_bends(part, graph, sizes)
+        proposal = _proposal(graph, sizes, bends, settings)
+        rows = {f.id: np.flatnonzero(np.isin(sizes.tag, f.tags)) for f in found.of_kind(GROUP)}
         anew = {
-            f.id: _feature(f.id, np.flatnonzero(np.isin(sizes.tag, f.tags)), sizes, bends, settings)
-            for f in found.of_kind("group")
+            id: _feature(id, mine, sizes, bends, settings, proposal) for id, mine in rows.items()
         }
         features = tuple(
             f
@@ -137,11 +141,36 @@ def _size(sizes: PatchSizes, settings: SurfaceSettings) -> Floats:
     return sizes.diagonal if settings.grouping == ALIGNED else sizes.diameter
 
 
+def _proposal(
+    graph: FaceGraph, sizes: PatchSizes, bends: PatchRadii, settings: SurfaceSettings
+) -> LocalProposal | None:
+    """Return what is proposed as local, None where a person set the threshold."""
+    return None if settings.local_ratio > 0.0 else proposed(graph, sizes, bends.hollow)
+
+
+def _divided(groups: list[Ints], sizes: PatchSizes, proposal: LocalProposal | None) -> list[Ints]:
+    """Return the groups, those with equal patches on local features and elsewhere in two."""
+    if proposal is None:
+        return groups
+    local = proposal.local[sizes.tag - 1]
+    return [part for g in groups for part in (g[~local[g]], g[local[g]]) if len(part)]
+
+
 def _feature(
-    id: str, rows: Ints, sizes: PatchSizes, bends: PatchRadii, settings: SurfaceSettings
+    id: str,
+    rows: Ints,
+    sizes: PatchSizes,
+    bends: PatchRadii,
+    settings: SurfaceSettings,
+    proposal: LocalProposal | None,
 ) -> Feature:
     size = _size(sizes, settings)
     ratio = float(size[rows].max() / size.max())
+    local = (
+        ratio < settings.local_ratio
+        if proposal is None
+        else bool(proposal.local[sizes.tag[rows] - 1].all())
+    )
     return Feature(
         id=id,
         kind="group",
@@ -157,7 +186,7 @@ def _feature(
             "area": float(sizes.area[rows].sum()),
             **bends.sizes(rows),
         },
-        attributes={"local": ratio < settings.local_ratio},
+        attributes={LOCAL: local},
     )
 
 

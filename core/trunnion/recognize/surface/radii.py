@@ -26,12 +26,14 @@ FLAT = 1e-9
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class PatchRadii:
     """Radii of the patches, a row a tag, in mm, NaN where there is none: the smallest where the patch is hollow (concave) and where it
-    bulges (convex), and the one of a fillet in an inner corner or of a rounded outer one."""
+    bulges (convex), and the one of a fillet in an inner corner or of a rounded outer one. hollow (n,) is the middle of the hollow
+    curvature all over the patch, 1/mm, 0 where most of it is not hollow."""
 
     concave: Floats
     convex: Floats
     fillet: Floats
     rounding: Floats
+    hollow: Floats
 
     def sizes(self, rows: Ints) -> dict[str, float]:
         """Return the smallest radii of some patches by the names of sizes; those that are nowhere are left out."""
@@ -67,7 +69,17 @@ def patch_bends(bounded: Bounded, graph: FaceGraph, sizes: PatchSizes) -> PatchR
         _radius(np.array(extreme))[kinds]
         for extreme in ([-b.least for b in bends], [b.most for b in bends])
     )
-    return PatchRadii(concave=concave, convex=convex, fillet=blends[:, 0], rounding=blends[:, 1])
+    return PatchRadii(
+        concave=concave,
+        convex=convex,
+        fillet=blends[:, 0],
+        rounding=blends[:, 1],
+        hollow=np.array([_hollow(b) for b in bends])[kinds],
+    )
+
+
+def _hollow(bend: FaceCurvature) -> float:
+    return max(0.0, -float(np.median(bend.spread[:, 0]))) if len(bend.spread) else 0.0
 
 
 def _kinds(graph: FaceGraph, sizes: PatchSizes) -> Ints:

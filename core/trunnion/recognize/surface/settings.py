@@ -48,12 +48,13 @@ class SurfaceSettings:
         help="Divide groups of equal diagonal by the sides of their boxes (aligned only).",
     )
     local_ratio: float = setting(
-        0.3,
+        0.0,
         unit="of the largest",
         low=0.0,
         high=1.0,
         label="Local feature below",
-        help="A group is a local feature when its size over the largest patch's is below this.",
+        help="A group is a local feature when its size over the largest patch's is below this; 0: connected faces are judged together, "
+        "and those below the gap in the part's own sizes are proposed.",
     )
     sliver_width: float = setting(
         SLIVER_WIDTH,

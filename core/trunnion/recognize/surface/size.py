@@ -29,7 +29,7 @@ BLOCK = 1000
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class PatchSizes:
     """Sizes of the patches, a row a tag: sides (n, 3) and diagonal (n,) of the axis-aligned box of the boundary, diameter (n,) its
-    largest distance of two points, length (n,) of the boundary, mm; area (n,) mm2."""
+    largest distance of two points, length (n,) of the boundary, mm; area (n,) mm2. outline has the points the diameters are from."""
 
     tag: Ints
     sides: Floats
@@ -37,6 +37,7 @@ class PatchSizes:
     diameter: Floats
     length: Floats
     area: Floats
+    outline: Boundary
 
     @property
     def width(self) -> Floats:
@@ -61,9 +62,10 @@ def patch_sizes(bounded: Bounded, tags: Sequence[int], area: Floats, *, exact: b
         tag=np.array(tags, dtype=np.int64),
         sides=sides,
         diagonal=np.linalg.norm(sides, axis=1),
-        diameter=np.array([_diameter(spread.points_of(t)) for t in tags]),
+        diameter=np.array([diameter(spread.points_of(t)) for t in tags]),
         length=np.array([boxes.length_of(t) for t in tags]),
         area=np.asarray(area, dtype=np.float64),
+        outline=spread,
     )
 
 
@@ -93,7 +95,7 @@ def repaired(bounded: Bounded) -> Parts:
     return parts
 
 
-def _diameter(points: Floats) -> float:
+def diameter(points: Floats) -> float:
     """Return the largest distance of two points (k, 3): of runs of points first, then only where two runs may hold the farthest pair."""
     if not len(points):
         return 0.0
