@@ -34,7 +34,8 @@ class PartMetadata:
     """What is known of a part beside its shape.
 
     `unit` is the file's own ("mm", "inch", ...), lengths here are mm; `tags` (k,) the tag of every face of the chosen solid in the
-    order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them.
+    order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them; `backing` the
+    tags of faces that are none of the file's: they make a solid of faces that enclose no material (`part.backing`).
     """
 
     path: str
@@ -51,6 +52,7 @@ class PartMetadata:
     names: Mapping[int, str] = field(default_factory=dict)
     colours: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
+    backing: tuple[int, ...] = ()
 
     def to_json(self) -> str:
         """Return the facts as JSON text."""
@@ -68,6 +70,7 @@ class PartMetadata:
         data["names"] = {int(k): v for k, v in data["names"].items()}
         data["colours"] = {int(k): tuple(v) for k, v in data["colours"].items()}
         data["tags"] = tuple(data["tags"])
+        data["backing"] = tuple(data["backing"])
         return PartMetadata(**data)
 
 
@@ -115,6 +118,10 @@ class Part:
     )
     colours = property(
         lambda self: self.facts.colours, doc="Colours of faces by tag, where the file gives them."
+    )
+    backing = property(
+        lambda self: self.facts.backing,
+        doc="Tags of faces that only give open faces material behind them: nobody asks for them.",
     )
     findings = property(
         lambda self: self.facts.findings, doc="What a person should know about the file."
