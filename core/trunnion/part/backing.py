@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
-from OCP.BRep import BRep_Builder
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
@@ -132,7 +132,7 @@ def _pieces(part: Part, side: OpenSide) -> list[dict[int, Shape]]:
     piece = pieces_of(part.graph(), part.tags)
     found: list[dict[int, Shape]] = [{} for _ in range(int(piece.max()) + 1)]
     for tag in part.tags:
-        face = part.face_shape(tag)
+        face: Shape = part.face_shape(tag)
         found[piece[tag - 1]][tag] = face.Reversed() if tag in side.turned else face
     return found
 
@@ -169,16 +169,14 @@ def _solid(faces: dict[int, Shape], ground: _Ground) -> tuple[Shape, dict[int, S
 
 def _free_edges(shape: Shape) -> list[Shape]:
     """Return the edges of a shape with a face on one side only; neither seams nor degenerate ones."""
-    from OCP.BRep import BRep_Tool
-
     owners = TopTools_IndexedDataMapOfShapeListOfShape()
     TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, owners)
     found = []
     for edge in edges_of(shape):
         faces = owners.FindFromKey(edge)
-        if faces.Extent() == 1 and not BRep_Tool.Degenerated_s(edge):
-            if not BRep_Tool.IsClosed_s(edge, TopoDS.Face_s(faces.First())):
-                found.append(edge)
+        alone = faces.Extent() == 1 and not BRep_Tool.Degenerated_s(edge)
+        if alone and not BRep_Tool.IsClosed_s(edge, TopoDS.Face_s(faces.First())):
+            found.append(edge)
     return found
 
 
@@ -186,7 +184,7 @@ def _check(part: Part, side: OpenSide, ground: _Ground, shape: Shape, volume: fl
     """Raise `BadInput` unless a backing is closed, valid, and as large as what stands over its plane."""
     corners = side.frame().to_local(part.mesh().corners().reshape(-1, 3)).reshape(-1, 3, 3)
     a, b, c = np.moveaxis(corners, 1, 0)
-    plan = 0.5 * np.cross((b - a)[:, :2], (c - a)[:, :2])
+    plan = 0.5 * np.cross(b - a, c - a)[:, 2]
     turned = np.isin(part.mesh().face, sorted(side.turned))
     over = (corners[:, :, 2].mean(axis=1) - ground.base) * np.where(turned, -plan, plan)
     expected = float(over.sum())

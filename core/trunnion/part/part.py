@@ -34,8 +34,8 @@ class PartMetadata:
     """What is known of a part beside its shape.
 
     `unit` is the file's own ("mm", "inch", ...), lengths here are mm; `tags` (k,) the tag of every face of the chosen solid in the
-    order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them; `backing` the
-    tags of faces that are none of the file's: they make a solid of faces that enclose no material (`part.backing`).
+    order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them;
+    `backing` the tags of faces that are none of the file's: they make a solid of faces that enclose no material (`part.backing`).
     """
 
     path: str

@@ -45,7 +45,7 @@ class Step:
         """Return the digest of everything the step would be given now."""
         used = self.settings() if self.uses is None else self.uses(session)
         settings: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
-        opened = tuple(
+        opened: tuple[Any, ...] = tuple(
             checked(choose(group, session.choices)) for group in used_settings(context.part)
         )
         return digest(

@@ -19,8 +19,8 @@ from trunnion.pipeline.context import Context
 from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
-from trunnion.pipeline.planning.open_faces import OpenSettings, frame_and_finding
 from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
+from trunnion.pipeline.planning.open_faces import OpenSettings, frame_and_finding
 from trunnion.pipeline.planning.scene import SessionContext
 from trunnion.pipeline.proof.posted_programs import prove_session
 from trunnion.pipeline.repair.findings import repair_findings

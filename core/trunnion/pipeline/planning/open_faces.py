@@ -1,4 +1,4 @@
-"""Faces that enclose no material: the side they are machined from, and the part with the backing that is planned and proven in their place."""
+"""Faces that enclose no material: the side they are machined from, and the part with a backing that is planned and proven for them."""
 
 from __future__ import annotations
 
