@@ -107,8 +107,8 @@ def _recognize(session: Session, context: Context, progress: Progress) -> Result
 
 def _seen_from_side(found: Recognition, session: Session, context: Context) -> Recognition:
     """Return what was recognised of open faces in the frame that they are machined in, if there is one, with what is said of it."""
-    frame, told = frame_and_finding(context.part, session.choices)
-    return replace(found, frame=frame or found.frame, findings=(*found.findings, told))
+    frame, finding = frame_and_finding(context.part, session.choices)
+    return replace(found, frame=frame or found.frame, findings=(*found.findings, finding))
 
 
 def measured_anew(session: Session, context: Context) -> Session:
