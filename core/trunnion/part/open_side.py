@@ -40,7 +40,7 @@ SIDES = {
 TILT = radians(1.0)
 """A triangle that leans over by less than this stands upright: triangles lean by as much on a face whose rim is upright, in radians."""
 AWAY = 0.01
-"""Share of a piece's area that may look away from its direction: triangles at a fillet's upright rim do, and the kernel's solid is checked."""
+"""Share of a piece's area that may look away from its direction: triangles at upright rims do; the kernel's solid is checked."""
 OVERLAP = 2e-3
 """Share of the plan area that faces may cover twice."""
 AS_GOOD = 0.9
