@@ -21,7 +21,7 @@ Height = Callable[[float, float], float]
 """Height (mm) over shares of length and width."""
 KINDS = ("boss", "dome", "dimple")
 MOST_DRAWS = 10
-"""Draws of a seed until its solid is valid: the kernel's booleans fail where local features meet a wavy top badly."""
+"""Draws of a seed until its solid is valid: booleans fail, in errors of several kinds, where local features meet a wavy top badly."""
 FEET = (0.0, 0.0, 1.5, 2.5)
 """mm: radii where a boss or dome meets the plate."""
 
@@ -29,7 +29,12 @@ FEET = (0.0, 0.0, 1.5, 2.5)
 def plate(seed: int) -> Seeded:
     """Return the random curved plate of a seed: the first of its draws in whose file the kernel finds no fault."""
     for number in range(MOST_DRAWS):
-        made = _drawn(seed, Random(f"plate {seed}" + (f", draw {number + 1}" if number else "")))
+        draw = Random(f"plate {seed}" + (f", draw {number + 1}" if number else ""))
+        try:
+            made = _drawn(seed, draw)
+        except Exception as reason:
+            del reason
+            continue
         if _is_sound(made):
             return made
     raise ValueError(f"plate {seed}: {MOST_DRAWS} draws gave no valid solid")

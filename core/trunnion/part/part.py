@@ -35,7 +35,8 @@ class PartMetadata:
 
     `unit` is the file's own ("mm", "inch", ...), lengths here are mm; `tags` (k,) the tag of every face of the chosen solid in the
     order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them; `entities`
-    the first line in an IGES file's directory of the entity that a face comes from, by its tag.
+    the first line in an IGES file's directory of the entity that a face comes from, by its tag; `backing` the tags of faces that are none
+    of the file's: they make a solid of faces that enclose no material (`part.backing`).
     """
 
     path: str
@@ -53,6 +54,7 @@ class PartMetadata:
     colours: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
     entities: Mapping[int, int] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
+    backing: tuple[int, ...] = ()
 
     def to_json(self) -> str:
         """Return the facts as JSON text."""
@@ -71,6 +73,7 @@ class PartMetadata:
         data["colours"] = {int(k): tuple(v) for k, v in data["colours"].items()}
         data["entities"] = {int(k): v for k, v in data["entities"].items()}
         data["tags"] = tuple(data["tags"])
+        data["backing"] = tuple(data["backing"])
         return PartMetadata(**data)
 
 
@@ -122,6 +125,10 @@ class Part:
     entities = property(
         lambda self: self.facts.entities,
         doc="The line in an IGES file's directory of the entity of a face, by its tag.",
+    )
+    backing = property(
+        lambda self: self.facts.backing,
+        doc="Tags of faces that only give open faces material behind them: nobody asks for them.",
     )
     findings = property(
         lambda self: self.facts.findings, doc="What a person should know about the file."

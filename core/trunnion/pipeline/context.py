@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,7 +15,9 @@ from trunnion.geometry.cut import Cut
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.session import PartInfo
+from trunnion.pipeline.planning.open_faces import OpenSettings, with_backing
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.settings import choose, digest
 from trunnion.shop import Shop
 
 if TYPE_CHECKING:
@@ -32,6 +35,9 @@ class Context:
     part: Part
     shop: Shop
     _skins: dict[float, Skin] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _machined: dict[str, Context] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @cached_property
     def facts(self) -> PartInfo:
@@ -51,6 +57,20 @@ class Context:
             high=p.high,
             findings=tuple(p.findings),
         )
+
+    def machined(self, choices: Mapping[str, Any], progress: Progress = NO_PROGRESS) -> Context:
+        """Return the context that a part is planned and proven in: of faces that enclose no material, that of them with their backing.
+
+        Raises `BadInput` when no backing can be made; the one made last is kept.
+        """
+        if self.part.is_closed:
+            return self
+        key = digest(choose(OpenSettings, choices))
+        if key not in self._machined:
+            made = Context(with_backing(self.part, choices, progress), self.shop)
+            self._machined.clear()
+            self._machined[key] = made
+        return self._machined[key]
 
     def skin(self, chord: float = tolerance.SKIN_CHORD, progress: Progress = NO_PROGRESS) -> Skin:
         """Return the part's skin in its own coordinates within a chord error (mm), as fine as finishing needs it unless said; kept."""

@@ -9,6 +9,7 @@ from typing import Any
 from trunnion.findings import Finding
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
+from trunnion.pipeline.planning.open_faces import used_settings
 from trunnion.progress import Progress
 from trunnion.settings import checked, choose, digest
 
@@ -21,6 +22,10 @@ class Result:
     findings: tuple[Finding, ...] = ()
 
 
+Work = Callable[[Session, Context, Progress], Result]
+"""What a step does."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
     """One step: name, title, the steps whose results it reads (`after`), the settings it declares and those among them that a session
@@ -31,7 +36,7 @@ class Step:
     after: tuple[str, ...]
     settings: Callable[[], tuple[type, ...]]
     reads: Callable[[Session, Context], tuple[Any, ...]]
-    work: Callable[[Session, Context, Progress], Result]
+    work: Work
     done: Callable[[Session], bool]
     version: int = 1
     uses: Callable[[Session], tuple[type, ...]] | None = None
@@ -40,6 +45,9 @@ class Step:
         """Return the digest of everything the step would be given now."""
         used = self.settings() if self.uses is None else self.uses(session)
         settings: tuple[Any, ...] = tuple(checked(choose(group, session.choices)) for group in used)
+        opened: tuple[Any, ...] = tuple(
+            checked(choose(group, session.choices)) for group in used_settings(context.part)
+        )
         return digest(
-            self.name, self.version, settings, self.reads(session, context), *session.cuts
+            self.name, self.version, settings, self.reads(session, context), *session.cuts, *opened
         )

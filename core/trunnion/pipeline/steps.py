@@ -8,7 +8,7 @@ strategies a session uses its own ones' settings alone.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
+from functools import partial, wraps
 from typing import Any
 
 from trunnion import registry
@@ -20,12 +20,13 @@ from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
 from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
+from trunnion.pipeline.planning.open_faces import OpenSettings, frame_and_finding
 from trunnion.pipeline.planning.scene import SessionContext
 from trunnion.pipeline.proof.posted_programs import prove_session
 from trunnion.pipeline.repair.findings import repair_findings
 from trunnion.pipeline.repair.rounds import repaired
 from trunnion.pipeline.repair.settings import RepairSettings
-from trunnion.pipeline.step import Result, Step
+from trunnion.pipeline.step import Result, Step, Work
 from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settings
 from trunnion.plan.blank import BlankSettings
 from trunnion.plan.contract import RouteJob, planner_for
@@ -45,6 +46,7 @@ from trunnion.verify.settings import ProofSettings
 def _family_settings() -> tuple[type, ...]:
     return (
         RecognizeSettings,
+        OpenSettings,
         *(registry.get(FAMILIES, name).settings for name in registry.names(FAMILIES)),
     )
 
@@ -97,11 +99,19 @@ def _recognize(session: Session, context: Context, progress: Progress) -> Result
     found = replace(
         recognised(session, context, progress), face_area=graph.area, neighbours=graph.edge_face + 1
     )
+    if not context.part.is_closed:
+        found = _seen_from_side(found, session, context)
     kept = with_manual_features(session.recognition, found)
     after = replace(session, recognition=kept)
     return Result(
         session=after if kept is found else measured_anew(after, context), findings=kept.findings
     )
+
+
+def _seen_from_side(found: Recognition, session: Session, context: Context) -> Recognition:
+    """Return what was recognised of open faces in the frame that they are machined in, if there is one, with what is said of it."""
+    frame, finding = frame_and_finding(context.part, session.choices)
+    return replace(found, frame=frame or found.frame, findings=(*found.findings, finding))
 
 
 def measured_anew(session: Session, context: Context) -> Session:
@@ -132,6 +142,18 @@ def _certain(session: Session) -> Recognition:
     return found
 
 
+def _on_machined(work: Work) -> Work:
+    """Return a step's work as done on the part as it is planned and proven: open faces with their backing (`Context.machined`)."""
+
+    @wraps(work)
+    def done(session: Session, context: Context, progress: Progress) -> Result:
+        machined = context.machined(session.choices, progress)
+        with machined.part.watched(progress):
+            return work(session, machined, progress)
+
+    return done
+
+
 def _size(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "measuring")
     return Result(
@@ -139,6 +161,7 @@ def _size(session: Session, context: Context, progress: Progress) -> Result:
     )
 
 
+@_on_machined
 def _blank(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "blank")
     recognition = _certain(session)
@@ -146,6 +169,7 @@ def _blank(session: Session, context: Context, progress: Progress) -> Result:
     return Result(session=replace(session, blank=blank), findings=too_small(blank, context))
 
 
+@_on_machined
 def _route(session: Session, context: Context, progress: Progress) -> Result:
     recognition = _certain(session)
     if session.blank is None:
@@ -190,12 +214,14 @@ def _optimize(session: Session, context: Context, progress: Progress) -> Result:
     )
 
 
+@_on_machined
 def _toolpath(session: Session, context: Context, progress: Progress) -> Result:
     paths = make_paths(session, context, progress)
     found = findings_of(paths, session.process) if session.process else ()
     return Result(session=replace(session, paths=paths), findings=found)
 
 
+@_on_machined
 def _verify(session: Session, context: Context, progress: Progress) -> Result:
     verdict, posted = prove_session(session, context, progress)
     return Result(

@@ -222,7 +222,10 @@ def test_a_blank_that_can_not_be_written_is_one_line(
 @pytest.mark.parametrize(
     ("part", "cause"),
     [
-        ("open_shell.step", "the part is not closed"),
+        (
+            "open_shell.step",
+            "the faces enclose no material and can't be machined from any one side",
+        ),
         ("huge_20_metres.step", "the blank exceeds the machine's travel"),
     ],
 )

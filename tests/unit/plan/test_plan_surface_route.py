@@ -114,19 +114,16 @@ def test_semi_finishing_that_leaves_more_than_roughing_is_refused():
         routed(hilly(), **{"surface.semi_allowance": 0.5})
 
 
-def test_patches_that_enclose_nothing_are_segmented_but_not_planned():
+def test_patches_that_no_side_sees_are_segmented_but_not_planned():
     engine = Engine()
-    sheet = cq.Face.makeSplineApprox(
-        [[cq.Vector(x, y, 0.02 * x * y) for y in range(0, 30, 5)] for x in range(0, 30, 5)]
-    )
+    ball = cq.Workplane().sphere(10).cut(cq.Workplane().circle(3).extrude(20))
+    shell = cq.Shell.makeShell([f for f in ball.faces().vals() if f.geomType() == "SPHERE"])
     found = engine.run(
-        engine.with_choices(engine.open(written(sheet.wrapped)), CURVED), "recognize"
+        engine.with_choices(engine.open(written(shell.wrapped)), CURVED), "recognize"
     )
     assert [f.kind for f in found.recognition] == ["group"]
-    with pytest.raises(
-        BadInput,
-        match="nothing can be planned for faces that enclose no material.*; found before: the part is not closed",
-    ):
+    assert "open.no-side" in {f.code for f in found.findings()}
+    with pytest.raises(BadInput, match="can't be machined from any one side.*choose open.side"):
         engine.run(found, "route")
 
 

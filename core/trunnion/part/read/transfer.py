@@ -182,12 +182,12 @@ def _part(read: TransferResult, request: ReadRequest) -> Part:
     notes += _loose(bodies, len(tagged), request)
     if not body.is_closed:
         notes.append(
-            error(
+            warning(
                 "part.open",
-                f"the part is not closed: {body.open_edges} edges have a face on one side only, so there is no "
-                "telling where material is",
+                f"the part is not closed: {body.open_edges} edges have a face on one side only; its faces can be "
+                "machined from one side (open.side)",
                 request.file,
-                remedy="close the gaps in the CAD system and export the solid again",
+                remedy="where it is to be a solid, close the gaps in the CAD system and export it again",
             )
         )
     facts = PartMetadata(

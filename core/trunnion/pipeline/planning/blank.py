@@ -85,8 +85,9 @@ def _digest(path: str, changed: int, size: int) -> str:
 
 
 def too_small(blank: Blank, context: Context) -> tuple[Finding, ...]:
-    """Return an error where the part stands out of its blank."""
-    points = context.part.mesh().points
+    """Return an error where the part stands out of its blank; a backing may, there is nothing of it in a file's blank."""
+    mesh = context.part.mesh()
+    points = mesh.points[np.unique(mesh.triangles[~np.isin(mesh.face, context.part.backing)])]
     inward = blank.inward(blank.frame.to_local(points))
     if inward.min() >= -tolerance.SEW:
         return ()

@@ -219,7 +219,7 @@ def prove_programs(
     }
     verdict: Verdict = prove(
         programs,
-        context.part,
+        context.machined(session.choices, progress).part,
         session.blank,
         context.shop.tools,
         [machine_of(s, machines) for s in used],

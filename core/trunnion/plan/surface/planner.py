@@ -34,8 +34,7 @@ class SurfacePlanner:
         """Raise `BadInput` for faces that enclose no material."""
         if not part.is_closed:
             raise BadInput(
-                "nothing can be planned for faces that enclose no material; export the whole solid from the CAD system, or only "
-                "group, cut and export these faces"
+                "nothing can be planned for faces that enclose no material and have no backing"
             )
 
     def route(self, job: RouteJob) -> ProcessTree:

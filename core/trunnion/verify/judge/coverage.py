@@ -48,18 +48,24 @@ def covered(
     planned: Collection[int],
     progress: Progress = NO_PROGRESS,
     machines: Sequence[Machine] = (),
+    unasked: Collection[int] = (),
 ) -> CoverageResult:
     """Return what all setups together finish of the part.
 
     `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
     something is not finished, as if nothing held the part. They lean where the side's own of `machines` does, which
-    needs facets of all faces; without machines they are upright.
+    needs facets of all faces; without machines they are upright. Of faces of tags in `unasked`
+    nothing has to be finished, and nothing is told.
     """
     frame = sides[0].frame
     n = len(tags)
     progress.at(0.0, "Adding up what is finished")
+    unasked_face = np.isin(tags, sorted(unasked))
     residual, blank_face = progress.aside(
-        lambda _: (blank.depth(samples.point, frame), on_blank(samples, blank, frame, n))
+        lambda _: (
+            blank.depth(samples.point, frame),
+            on_blank(samples, blank, frame, n) | unasked_face,
+        )
     )
     for p in proofs:
         residual = np.minimum(residual, p.residual)
@@ -75,9 +81,11 @@ def covered(
     wanted = float(area[~blank_face].sum())
     reachable_area = wanted - float(away.sum())
     gouge = np.max([np.zeros(n), *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
-    faces = progress.aside(
+    every = progress.aside(
         lambda _: _faces(samples, tags, residual, area, done, away, gouge, blank_face, set(planned))
     )
+    faces = tuple(f for f in every if f.face not in unasked)
+    shown = ~unasked_face[samples.face]
     coverage = round(float(done.sum()) / wanted, DECIMALS) if wanted and proofs else 0.0
     of_reachable = (
         round(float(done.sum()) / reachable_area, DECIMALS)
@@ -90,7 +98,9 @@ def covered(
         faces=faces,
         findings=_findings(faces, of_reachable, settings),
         deviation=Deviation(
-            face=tags[samples.face], point=frame.to_world(samples.point), deviation=residual
+            face=tags[samples.face[shown]],
+            point=frame.to_world(samples.point[shown]),
+            deviation=residual[shown],
         ),
     )
 

@@ -68,6 +68,7 @@ def prove(
         planned_faces,
         material,
         facets,
+        part.backing,
     )
 
 
@@ -104,10 +105,12 @@ def prove_surfaces(
     planned_faces: Collection[int] = (),
     material: Material | None = None,
     facets: Sequence[Facets] = (),
+    unasked: Collection[int] = (),
 ) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
 
-    `facets` are the same faces as triangles, one each: without them no tool may lean. Raises `BadInput` for turning.
+    `facets` are the same faces as triangles, one each: without them no tool may lean. `unasked` are the tags of faces
+    that nobody wants finished: they are in the way of tools, and material. Raises `BadInput` for turning.
     """
     refuse_turning(section for program in programs for section in program.sections)
     frames = [p.setup.frame for p in programs] or [blank.frame]
@@ -153,6 +156,7 @@ def prove_surfaces(
         planned_faces,
         progress.part(0.8, 1.0),
         machines if facets else (),
+        unasked,
     )
     findings += whole.findings
     operations, blocks = progress.aside(
