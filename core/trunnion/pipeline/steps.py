@@ -46,7 +46,6 @@ from trunnion.verify.settings import ProofSettings
 def _family_settings() -> tuple[type, ...]:
     return (
         RecognizeSettings,
-        OpenSettings,
         *(registry.get(FAMILIES, name).settings for name in registry.names(FAMILIES)),
     )
 
@@ -301,7 +300,8 @@ STEP_TABLE: tuple[Step, ...] = (
         name="blank",
         title="Blank",
         after=("recognize",),
-        settings=lambda: (BlankSettings,),
+        settings=lambda: (BlankSettings, OpenSettings),
+        uses=lambda s: (BlankSettings,),
         work=_blank,
         reads=lambda s, b: (
             b.part.digest,
