@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
-from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRep import BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
@@ -22,13 +22,13 @@ from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Compound
+from OCP.TopoDS import TopoDS
 from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
-from trunnion.part.build import box_blank
+from trunnion.part.build import box_blank, compound
 from trunnion.part.open_side import ADVICE, OpenSide, pieces_of
 from trunnion.part.part import Part
 from trunnion.part.topology.identity import (
@@ -102,15 +102,6 @@ def backed(part: Part, side: OpenSide, thickness: float) -> Part:
     )
     walls = [index.FindKey(n) for n in extra]
     return Part(facts, shape, compound([*faces_of(part.as_read), *walls]))
-
-
-def compound(shapes: list[Shape]) -> Shape:
-    """Return shapes as one compound."""
-    made, builder = TopoDS_Compound(), BRep_Builder()
-    builder.MakeCompound(made)
-    for shape in shapes:
-        builder.Add(made, shape)
-    return made
 
 
 def _ground(part: Part, side: OpenSide, thickness: float) -> _Ground:

@@ -1,6 +1,8 @@
-"""Shapes that the program makes itself: those of blanks."""
+"""Shapes that the program makes itself: those of blanks, and several as one."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -75,6 +77,18 @@ def faceted_blank(points: Floats, triangles: Ints) -> Shape:
     if sewn.ShapeType() != TopAbs_SHELL:
         raise BadInput("the blank's triangles make no single solid; write its own file instead")
     return BRepBuilderAPI_MakeSolid(TopoDS.Shell_s(sewn)).Solid()
+
+
+def compound(shapes: Iterable[Shape]) -> Shape:
+    """Return shapes as one compound."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Compound
+
+    made, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(made)
+    for shape in shapes:
+        builder.Add(made, shape)
+    return made
 
 
 class ShapeBuilder:

@@ -11,7 +11,6 @@ from typing import TypeVar
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
-from OCP.BRep import BRep_Builder
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
@@ -20,13 +19,13 @@ from OCP.BRepGProp import BRepGProp
 from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
 from OCP.GProp import GProp_GProps
 from OCP.Standard import Standard_Failure
-from OCP.TopoDS import TopoDS_Compound
 from OCP.TopTools import TopTools_IndexedMapOfShape, TopTools_ListOfShape
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.cut import Cut
+from trunnion.part.build import compound
 from trunnion.part.face_curve import DrawnCurve
 from trunnion.part.part import Part
 from trunnion.part.topology.identity import (
@@ -87,7 +86,7 @@ def divided(part: Part, cut: Cut) -> Part:
         colours=_inherited(facts.colours, new_tags),
     )
     as_read[cut.face - 1] = read_pieces[0]
-    return Part(after, shape, _compound([*as_read, *read_pieces[1:]]))
+    return Part(after, shape, compound([*as_read, *read_pieces[1:]]))
 
 
 def _pieces(face: Shape, cut: Cut, where: str) -> list[Shape]:
@@ -199,11 +198,3 @@ def _listed(shapes: Iterable[Shape]) -> TopTools_ListOfShape:
     for shape in shapes:
         found.Append(shape)
     return found
-
-
-def _compound(faces: list[Shape]) -> Shape:
-    made, builder = TopoDS_Compound(), BRep_Builder()
-    builder.MakeCompound(made)
-    for face in faces:
-        builder.Add(made, face)
-    return made

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from trunnion.findings import BadInput
+from trunnion.part.build import compound
 from trunnion.part.read.kernel_messages import hush
 from trunnion.part.topology.identity import Shape
 
@@ -50,9 +51,9 @@ def write_faces(faces: Sequence[Shape], path: str | os.PathLike[str], *, unit: s
     """
     suffix = Path(path).suffix.lower()
     if suffix in IGES:
-        write_iges(_compound(_as_splines(faces)), path, unit=unit)
+        write_iges(compound(_as_splines(faces)), path, unit=unit)
     elif suffix in STEP:
-        write_step(_compound(_shells(faces)), path, unit=unit)
+        write_step(compound(_shells(faces)), path, unit=unit)
     else:
         raise BadInput(f"{path}: faces are written as {', '.join(IGES)} or {', '.join(STEP)}")
 
@@ -82,7 +83,7 @@ def _shells(faces: Sequence[Shape]) -> list[Shape]:
 
     from trunnion.part.topology.identity import edge_index, edges_of
 
-    index = edge_index(_compound(faces))
+    index = edge_index(compound(faces))
     pairs = [(k, len(faces) + index.FindIndex(e)) for k, f in enumerate(faces) for e in edges_of(f)]
     count = len(faces) + index.Extent() + 1
     links = coo_array(([1] * len(pairs), tuple(zip(*pairs, strict=True))), shape=(count, count))
@@ -94,17 +95,6 @@ def _shells(faces: Sequence[Shape]) -> list[Shape]:
             builder.MakeShell(shells[number])
         builder.Add(shells[number], face)
     return list(shells.values())
-
-
-def _compound(shapes: Sequence[Shape]) -> Shape:
-    from OCP.BRep import BRep_Builder
-    from OCP.TopoDS import TopoDS_Compound
-
-    made, builder = TopoDS_Compound(), BRep_Builder()
-    builder.MakeCompound(made)
-    for shape in shapes:
-        builder.Add(made, shape)
-    return made
 
 
 def _written(path: Path, write: object) -> None:
