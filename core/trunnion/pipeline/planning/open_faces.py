@@ -78,7 +78,7 @@ def frame_and_finding(part: Part, choices: Mapping[str, Any]) -> tuple[Frame | N
     frame = WORLD if known == "+z" else side.frame()
     return frame, info(
         "open.side",
-        f"the {len(part.tags)} faces enclose no material: they are machined from {seen}, on a backing that the program adds",
+        f"the faces ({len(part.tags)}) enclose no material: they are machined from {seen}, on a backing that the program adds",
         remedy="choose open.side to machine them from another side, open.backing for the material behind them",
     )
 
