@@ -18,10 +18,6 @@ if TYPE_CHECKING:
     from trunnion.pipeline import Engine
 
 
-OPEN = "part.open"
-"""The code of the finding that a part's faces enclose no material."""
-
-
 def part_command(
     commands: Any, name: str, help: str, description: str = ""
 ) -> argparse.ArgumentParser:
@@ -237,9 +233,6 @@ def table(rows: Sequence[tuple[str, ...]], right: tuple[int, ...] = ()) -> str:
     return "\n".join(lines)
 
 
-def exit_code(findings: Iterable[Finding], *, may_be_open: bool = False) -> int:
-    """Return 1 when any finding is an error, 0 otherwise.
-
-    That a part's faces enclose nothing is no error to a command for which it `may_be_open`: grouping and exporting patches need no solid.
-    """
-    return 1 if has_errors(f for f in findings if not (may_be_open and f.code == OPEN)) else 0
+def exit_code(findings: Iterable[Finding]) -> int:
+    """Return 1 when any finding is an error, 0 otherwise."""
+    return 1 if has_errors(findings) else 0

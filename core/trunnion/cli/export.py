@@ -74,4 +74,4 @@ def run(options: argparse.Namespace) -> int:
         if apart:
             print(f"{dropped_words(apart)}: not written")
     show_findings(options, session.findings())
-    return exit_code(session.findings(), may_be_open=True)
+    return exit_code(session.findings())

@@ -41,7 +41,6 @@ def add(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the features and what nothing explains."""
     from trunnion.pipeline.planning.patches import dropped
-    from trunnion.recognize.contract import exclusive_kinds
 
     engine, session = open_session(options, "recognize")
     session = with_manual_edits(options, engine, session)
@@ -82,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
         if apart:
             print(f"{dropped_words(apart)}: in no group, cut with the area around")
     show_findings(options, session.findings())
-    return exit_code(session.findings(), may_be_open=bool(exclusive_kinds(found.family)))
+    return exit_code(session.findings())
 
 
 def _feature_table(found: Recognition) -> str:

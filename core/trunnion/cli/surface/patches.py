@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
         print(table(lines, right=(0, 1, 2, 3, 4)))
         print(f"boundary curves are within {errors[worst]:.2g} mm of their surfaces (face {worst})")
     show_findings(options, session.part.findings)
-    return exit_code(session.part.findings, may_be_open=True)
+    return exit_code(session.part.findings)
 
 
 def _counts(words: str) -> tuple[int, ...]:
