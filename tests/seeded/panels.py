@@ -134,10 +134,14 @@ def _island(draw: Random, plan: _Plan, depth: float) -> cq.Workplane:
 
 
 def _lowered_rib(draw: Random, plan: _Plan) -> cq.Workplane:
-    """Return what lowers the wall between the first two columns, in its middle row, below the panel's top."""
+    """Return what lowers the wall between the first two columns, in its middle row, below the panel's top.
+
+    It takes the fillets of higher steps beside the wall along: no drawing leaves lips of them that run out to nothing.
+    """
     deep = draw.uniform(0.15, 0.45) * plan.height
     row = plan.rows // 2
     y = plan.wall + row * (plan.cell[1] + plan.wall) + plan.corner
-    size = plan.wall + 0.02, plan.cell[1] - 2.0 * plan.corner, deep + 1.0
+    beside = plan.foot + 0.01
+    size = plan.wall + 2.0 * beside, plan.cell[1] - 2.0 * plan.corner, deep + 1.0
     box = cq.Workplane("XY").box(*size, centered=False)
-    return box.translate((plan.wall + plan.cell[0] - 0.01, y, plan.height - deep))
+    return box.translate((plan.wall + plan.cell[0] - beside, y, plan.height - deep))

@@ -83,6 +83,24 @@ def test_what_is_above_the_flutes_is_stacked_from_the_tip() -> None:
     )
 
 
+@pytest.mark.parametrize("fillet", [0.0, 1.0, 3.0])
+@pytest.mark.parametrize("back", [0.0, 0.25, 2.0])
+def test_layers_along_a_wall_leave_the_flutes_room_over_the_layer_above(
+    fillet: float, back: float
+) -> None:
+    cutter = tool(corner_radius=fillet, neck_diameter=10.0 - 2.0 * back)
+    step = cutter.flank_step(40.0)
+    over = fillet - (cutter.flute_length - step)
+    left = fillet - math.sqrt(fillet**2 - over**2)
+    assert step <= cutter.flute_length
+    assert left == approx(min(back, fillet))
+
+
+def test_one_layer_takes_all_that_the_flutes_are_long() -> None:
+    cutter = tool(corner_radius=3.0)
+    assert cutter.flank_step(cutter.flute_length) == cutter.flute_length
+
+
 def test_a_tool_whose_lengths_do_not_grow_is_refused() -> None:
     with pytest.raises(ValueError, match="must grow"):
         tool(stickout=30.0)

@@ -108,6 +108,19 @@ class Tool:
             return self.stickout
         return self.neck_length
 
+    def flank_step(self, height: float) -> float:
+        """Return how deep the layers along a wall of a height may be, mm: the flutes reach over what the layer above left.
+
+        One layer takes all that the flutes are long. Of several, each leaves the fillet of the corner radius R at its foot, and the neck of
+        the next comes as high as its flutes: they have to pass the height h at which that fillet is as wide as the neck stands back, e:
+        R - sqrt(R^2 - (R - h)^2) = e.
+        """
+        if height <= self.flute_length:
+            return self.flute_length
+        fillet = self.corner_radius
+        back = min(max(self.radius - self.neck_diameter / 2, 0.0), fillet)
+        return self.flute_length - (fillet - math.sqrt(fillet**2 - (fillet - back) ** 2))
+
     def profile(self) -> tuple[tuple[float, float, float, float], ...]:
         """Return what is above the flutes (neck, shank, holder) as truncated cones (z0, r0, z1, r1) from the tip."""
         rows = []

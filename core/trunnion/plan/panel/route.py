@@ -252,9 +252,9 @@ def _engagement(
             tool.diameter - 2 * tool.corner_radius
         )
     if kind in ("wall", "corner_finish", "profile_finish"):
-        return _even(task.height, min(tool.flute_length, WALL_STEP * tool.diameter)), max(
-            allowance, tolerance.SEW
-        )
+        return _even(
+            task.height, min(tool.flank_step(task.height), WALL_STEP * tool.diameter)
+        ), max(allowance, tolerance.SEW)
     if kind == "foot":
         return task.height, task.height
     if kind in ("rib_top", "island_top"):

@@ -406,7 +406,7 @@ def _outline(state: SurfacePlanState, tags: tuple[int, ...]) -> None:
         )
         return
     tool = max(fits, key=lambda t: (t.diameter, -depth_reached(t), t.name))
-    steps = max(1, math.ceil(height / min(tool.flute_length, WALL_STEP * tool.diameter)))
+    steps = max(1, math.ceil(height / min(tool.flank_step(height), WALL_STEP * tool.diameter)))
     rules = (
         stage.rule,
         f"{tool.name}: the stiffest end mill up to D {trimmed(most, 1)} that reaches {trimmed(height, 1)} mm.",

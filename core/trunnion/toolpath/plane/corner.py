@@ -219,7 +219,7 @@ def _heights(
         fillet_steps(drive.fillet, tool.corner_radius, scallop) if on_floor and finishes else (0.0,)
     )
     straight = (
-        steps_down(above, bottom + foot[0], min(depth, tool.flute_length))
+        steps_down(above, bottom + foot[0], min(depth, tool.flank_step(above - bottom - foot[0])))
         if above - bottom > foot[0] + tolerance.SEW
         else ()
     )

@@ -220,9 +220,9 @@ def _steps(
     """Return the heights of the passes along a wall: so many that the flutes, not the shank, meet what roughing left over the wall too."""
     tool, data, stock = builder.tool, builder.data, builder.stock()
     height = guide.top - guide.bottom
-    step = min(data.depth, tool.flute_length)
-    if data.depth >= height - tolerance.SEW:
-        step = tool.flute_length
+    step = tool.flank_step(height)
+    if data.depth < height - tolerance.SEW:
+        step = min(data.depth, step)
     axis_region = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
     # The disc a cell short of the wall: the cells at its rim are the part's own.
     material_inside = [

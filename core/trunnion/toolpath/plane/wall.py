@@ -89,7 +89,7 @@ def wall(
     axis_regions: dict[tuple[int, float, bool], AxisRegion] = {}
     for n, guide in enumerate(drive.walls):
         found = False
-        step = min(data.depth, tool.flute_length)
+        step = min(data.depth, tool.flank_step(guide.top - guide.bottom))
         for z, extra in _heights(guide, tool, step, settings.scallop, builder.tops()):
             progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
             boundary = _off_other_feet(level_at(drive, z).boundary, drive, guide, tool, z)
