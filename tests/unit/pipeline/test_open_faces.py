@@ -6,10 +6,12 @@ import math
 from functools import cache
 
 import cadquery as cq
+import numpy as np
 import pytest
 
 from samples import written
 from trunnion.findings import BadInput
+from trunnion.model.motion.toolpath import Mark
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import Engine
 from trunnion.pipeline.step import Step
@@ -104,3 +106,21 @@ def test_the_wrong_side_is_refused_in_one_line() -> None:
     with pytest.raises(BadInput, match="from the side \\+x.*choose open.side") as told:
         engine.run(session, "verify")
     assert "\n" not in str(told.value)
+
+
+def test_finishing_runs_on_past_the_rim_by_choice(proven) -> None:
+    engine, session = opened(wavy(), **{"surface.extension": 4.0, "surface.scallop": 0.02})
+    session = engine.run(session, "verify")
+    verdict = session.verdict
+    assert verdict.outcome in (Outcome.PASSED, Outcome.REMARKS)
+    assert verdict.coverage >= 0.99 and verdict.gouge < 1e-3 and verdict.collisions == 0
+    plain, longer = (
+        max(
+            float(np.ptp(told.path.position[told.path.mark == Mark.CUT][:, axis]))
+            for told in each.paths
+            if told.operation.startswith("finish")
+            for axis in (0, 1)
+        )
+        for each in (proven[1], session)
+    )
+    assert longer > plain + 4.0

@@ -72,7 +72,7 @@ class SurfaceDrive:
     in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` identifies all of this. `query_for`
     returns a tool's clearance query: which poses are clear of part and fixtures and within the machine's rotary limits
     (`pipeline.planning.clearance`); None where no tool may lean. `remaining_stock` is the material that stands, None where nobody knows.
-    `findings` say what fixtures keep the cutter from.
+    `findings` say what fixtures keep the cutter from. Passes run on past free rims by the `extension` in mm.
     """
 
     feature: str
@@ -91,6 +91,7 @@ class SurfaceDrive:
     query_for: Callable[[Tool], ClearanceQuery] | None = None
     remaining_stock: RemainingStockQuery | None = None
     findings: tuple[Finding, ...] = ()
+    extension: float = 0.0
 
     @property
     def is_empty(self) -> bool:

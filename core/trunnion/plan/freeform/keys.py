@@ -12,6 +12,8 @@ SCALLOP, ALLOWANCE, BOTTOM, CELL = (
 )
 """Keys of an operation's choices, mm: the scallop height it is wanted with, what it leaves on purpose, the height in the cutting frame that
 it goes down to, and the distance of the positions at which the part's height is measured."""
+EXTENSION = "surface.extension"
+"""Key of an operation's choices: how far in mm its passes run on past free rims."""
 EARLIER = "surface.earlier"
 """Key of an operation's choices: the name of the cutter that finished its faces before."""
 UPRIGHT_EARLIER = "surface.upright_earlier"

@@ -28,7 +28,7 @@ from trunnion.plan.freeform.fixtures import (
     with_fixtures,
 )
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
-from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
+from trunnion.plan.freeform.keys import ALLOWANCE, EXTENSION, SCALLOP, number
 from trunnion.plan.prismatic.fixtures import Notice, kept_off
 from trunnion.plan.prismatic.keep_out import excluded
 from trunnion.progress import NO_PROGRESS, Progress
@@ -126,7 +126,9 @@ class SurfaceSpace:
         Unless the tool leans, what it can't come to without its shank or holder meeting the part, or any of it a fixture of the setup,
         is none of its area; neither is what it can't come to with its tip outside the boxes that the operation avoids.
         """
-        height, allowance = (number(operation, key) for key in (SCALLOP, ALLOWANCE))
+        height, allowance, extension = (
+            number(operation, key) for key in (SCALLOP, ALLOWANCE, EXTENSION)
+        )
         thickness = LEFTOVER * operation.data.depth
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if earlier is not None and not needs.finds_rest:
@@ -168,6 +170,7 @@ class SurfaceSpace:
             thickness,
             needs.leans,
             *((boxes,) if boxes else ()),
+            *((extension,) if extension else ()),
         )
         return SurfaceDrive(
             feature=operation.feature,
@@ -190,6 +193,7 @@ class SurfaceSpace:
                 for notice, area in notices
                 if area is not None
             ),
+            extension=extension,
         )
 
     def _finding(self, operation: Operation, refused: KeepOutArea, notice: Notice) -> Finding:

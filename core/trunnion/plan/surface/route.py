@@ -40,6 +40,7 @@ from trunnion.plan.freeform.keys import (
     BOTTOM,
     CELL,
     EARLIER,
+    EXTENSION,
     SCALLOP,
     UPRIGHT_EARLIER,
 )
@@ -638,6 +639,8 @@ def _add_finish(
         f"It leaves {trimmed(allowance, 2)} mm.",
     )
     choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
+    if settings.extension > 0.0:
+        choices[EXTENSION] = settings.extension
     if height >= COARSE:
         choices[f"{strategy}.chord"] = CHORD_SHARE * height
     if strategy in SLOPE_LIMITS and STEEP in registry.names("strategies"):

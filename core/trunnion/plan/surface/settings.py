@@ -93,6 +93,15 @@ class SurfaceRouteSettings:
         label="Steep from",
         help="What leans from level by more is cut level by level.",
     )
+    extension: float = setting(
+        0.0,
+        unit="mm",
+        low=0.0,
+        high=100.0,
+        label="Passes past free rims",
+        help="How far finishing runs on along the face's tangent past the rim of open faces and past high sharp edges, "
+        "where nothing is beside; 0: to the rim.",
+    )
     lands: bool = setting(
         True,
         label="End mills on level lands",

@@ -25,6 +25,7 @@ from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.toolpath.contact_passes.extension import extended
 from trunnion.toolpath.contact_passes.overhang import overhang_tops
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stock_clearance import LEAST_STOCK, STOCK_SHARE
@@ -79,7 +80,7 @@ def linked(
     progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
-    passes = [p for p in passes if len(p) > 1]
+    passes = extended([p for p in passes if len(p) > 1], drive, tool, parameters.query)
     if not passes:
         return EMPTY
     # Order, then leads and links of all passes at once: drops on the skin are cheap only in batches.
