@@ -10,7 +10,7 @@ import pytest
 
 from flat_parts import operation
 from trunnion.geometry.frame import WORLD
-from trunnion.plan.surface.route import _in_order
+from trunnion.plan.surface.order import in_order
 from trunnion.shop.plans import Stage
 from verify_tools import bull
 
@@ -31,5 +31,5 @@ def test_what_hangs_over_is_cut_first_though_its_cutter_is_smaller(hanging):
     graph = SimpleNamespace(centre=np.zeros((3, 3)))
     space = SimpleNamespace(frame=WORLD, part=SimpleNamespace(graph=lambda: graph))
     state = SimpleNamespace(operations=[below, over], hanging=hanging, space=space)
-    order = [o.id for o in _in_order(state, (STAGE,))]
+    order = [o.id for o in in_order(state, (STAGE,))]
     assert order == (["semi-blade", "semi-floor"] if hanging else ["semi-floor", "semi-blade"])

@@ -1,0 +1,63 @@
+"""The order of operations on a part of curved surfaces: by stages, steep before shallow, hanging faces and large cutters first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from trunnion.model.operation import Operation
+from trunnion.plan.sequence import OrderedOperation, ordered
+from trunnion.plan.surface.plan_state import SurfacePlanState
+from trunnion.shop import Stage
+
+FALLING = ("rough", "semi")
+"""Kinds of operations that larger cutters come first in: what they leave is little for the smaller ones."""
+FIRST = "-steep"
+"""Ends the name of an operation on the steep positions of an area. It comes before the others there: from the top down it takes off what
+would stand in the way of a neck or shank at a wall's foot."""
+
+
+def in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation]:
+    """Return the operations in the order of the plan's stages, with as few tool changes as that allows."""
+    rank = {stage.name: n for n, stage in enumerate(stages)}
+    by_stage = {stage.name: stage for stage in stages}
+    jobs, done = [], {}
+    for o in state.operations:
+        stage = by_stage[o.group]
+        before = {
+            other.id
+            for other in state.operations
+            if other.group in stage.after_all
+            or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
+            or other.id == o.id + FIRST
+            or (other.group == o.group and _is_over(state, other) and not _is_over(state, o))
+            or (
+                o.kind in FALLING
+                and other.group == o.group
+                and other.cutter.diameter > o.cutter.diameter
+                and _is_over(state, other) == _is_over(state, o)
+            )
+        }
+        done[o.id] = replace(o, after=tuple(sorted(before)))
+        jobs.append(
+            OrderedOperation(
+                id=o.id,
+                tool=o.tool.name,
+                stage=rank[o.group],
+                position=_position(state, o.faces),
+                after=frozenset(before),
+            )
+        )
+    return [done[id] for id in ordered(jobs)]
+
+
+def _is_over(state: SurfacePlanState, operation: Operation) -> bool:
+    """Return whether an operation cuts hidden faces alone: what is left on them stands in the way of necks below, so they come first."""
+    return bool(operation.faces) and state.hanging.issuperset(operation.faces)
+
+
+def _position(state: SurfacePlanState, tags: tuple[int, ...]) -> tuple[float, float]:
+    if not tags:
+        return 0.0, 0.0
+    at = state.space.frame.to_local(state.space.part.graph().centre[tags[0] - 1])
+    return float(at[0]), float(at[1])
