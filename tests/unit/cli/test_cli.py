@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import cadquery as cq
 import pytest
 
 from parts import PARTS, needs_parts
@@ -131,6 +132,18 @@ def test_the_table_of_features_names_the_faces_that_move_takes(
     assert said[0].split() == ["feature", "kind", "n", "faces", "sizes"]
     assert any(" 1,2 " in line for line in said)
     assert any(line.endswith(" groups") for line in said)
+
+
+def test_the_table_of_features_says_why_some_are_local(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    plate = cq.Workplane("XY").box(60.0, 40.0, 8.0)
+    boss = cq.Workplane("XY").sphere(5.0).translate((0.0, 0.0, 4.0))
+    cq.exporters.export(plate.union(boss), str(tmp_path / "boss.step"))
+    main(["recognize", str(tmp_path / "boss.step"), "--set", "recognize.family=surface"])
+    shown = capsys.readouterr()
+    assert "sizes of connected faces jump from" in shown.out
+    assert "proposed as local" in shown.out
 
 
 def test_sizes_blank_route_and_optimize_each_print_json(

@@ -17,10 +17,13 @@ from trunnion.cli.common import (
     table,
     with_manual_edits,
 )
+from trunnion.findings import Finding, Severity
 
 if TYPE_CHECKING:
     from trunnion.model.feature import Recognition
 
+CHOSEN_FAMILY = "recognize.family"
+"""Code of the finding that says what a part was taken for."""
 MOST_NUMBERS = 10
 """Numbers of faces that a row of the table shows."""
 
@@ -46,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     session = with_manual_edits(options, engine, session)
     part, found = session.part, session.recognition
     assert part is not None and found is not None
-    apart = dropped(found)
+    apart, reasons = dropped(found), _reasons(found)
     if options.xml:
         from trunnion.store.features import write_features
 
@@ -80,8 +83,17 @@ def run(options: argparse.Namespace) -> int:
         )
         if apart:
             print(f"{dropped_words(apart)}: in no group, cut with the area around")
-    show_findings(options, session.findings())
+        for reason in reasons:
+            print(reason.text)
+    show_findings(options, [f for f in session.findings() if f not in reasons])
     return exit_code(session.findings())
+
+
+def _reasons(found: Recognition) -> tuple[Finding, ...]:
+    """Return the notes that say why features are what they are; what the part was taken for stands over the table."""
+    return tuple(
+        f for f in found.findings if f.severity is Severity.INFO and f.code != CHOSEN_FAMILY
+    )
 
 
 def _feature_table(found: Recognition) -> str:
