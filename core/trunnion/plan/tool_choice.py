@@ -15,6 +15,10 @@ CUSP_SPREAD = 1.1
 """What a cutter leaves in sharp edges over the square of its radius, over the same of the smallest: 1 between straight walls."""
 
 
+SLENDER = 7.5
+"""Stickout over diameter from which on a cutter is for what no shorter one of its size reaches, and saves no tool change elsewhere."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolRequirement:
     """What a cutter is wanted for.
@@ -122,12 +126,25 @@ def candidates(
             reason=f"no tool is small enough: the smallest that reaches is D {trimmed(min(t.diameter for t in deep), 3)}",
         )
     largest = max(t.diameter for t in inside)
-    near = [t for t in inside if t.diameter >= requirement.near * largest]
+    near = [t for t in without_slender(inside) if t.diameter >= requirement.near * largest]
     return Candidates(
         tools=tuple(
             sorted(near, key=lambda t: (-t.diameter, depth_reached(t), -t.corner_radius, t.name))
         )
     )
+
+
+def without_slender(tools: Sequence[Tool]) -> list[Tool]:
+    """Return cutters without the slender ones that a shorter one of their diameter and corner radius stands in for."""
+    shortest: dict[tuple[float, float], float] = {}
+    for tool in tools:
+        size = tool.diameter, tool.corner_radius
+        shortest[size] = min(shortest.get(size, tool.stickout), tool.stickout)
+    return [
+        t
+        for t in tools
+        if t.stickout <= max(SLENDER * t.diameter, shortest[t.diameter, t.corner_radius])
+    ]
 
 
 def depth_reached(tool: Tool) -> float:

@@ -13,6 +13,7 @@ from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature
 from trunnion.plan.panel.route import RouteSettings, make_route
 from trunnion.plan.setups import SetupSettings, make_setups
+from trunnion.plan.tool_choice import SLENDER, without_slender
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.shop import load_shop
@@ -181,9 +182,9 @@ def test_walls_are_finished_also_where_no_cutter_gets_into_the_corners():
 
 
 def test_where_no_cutter_is_slimmer_than_a_deep_corner_one_as_round_as_it_is_taken():
-    # 25 mm deep and 6 mm clear: cutters of D 5 reach 30 mm, those of D 6 36 mm
+    # 25 mm deep and 26 mm clear: cutters of D 5 reach 50 mm, those of D 6 60 mm
     tight = with_sizes(panel(), "pocket-01", corner_radius=3.0, floor_fillet=1.0)
-    tree = route(tight, reach_clearance=6.0)
+    tree = route(tight, reach_clearance=26.0)
     assert not [f for f in tree.findings if f.severity is Severity.ERROR]
     assert tree.operation("corner_finish-pocket-01").tool.radius == 3.0
     told = [f.text for f in tree.findings if f.code == "route.second-choice"]
@@ -252,3 +253,14 @@ def test_an_island_with_a_sharper_foot_than_its_pocket_gets_a_cutter_for_it(foot
 def test_an_island_with_its_pockets_foot_needs_none():
     tree = route(with_sizes(panel(), "island-01", floor_fillet=3.0))
     assert "foot-pocket-02" not in [o.id for o in tree.operations]
+
+
+def test_a_slender_cutter_is_for_what_no_shorter_one_of_its_size_reaches():
+    tools = SHOP.tools_for("N", "finish")
+    slender = [t for t in tools if t.stickout > SLENDER * t.diameter]
+    assert slender
+    kept = without_slender(tools)
+    assert not set(slender) & set(kept)
+    assert set(tools) - set(kept) == set(slender)
+    deep = [t for t in tools if t.neck_length > 50.0 and t.diameter <= 8.0]
+    assert set(without_slender(deep)) == set(deep) <= set(slender)

@@ -23,7 +23,7 @@ from trunnion.plan.freeform.lands import (
     without,
 )
 from trunnion.plan.freeform.reach import AreaSamples
-from trunnion.plan.tool_choice import covered_by_few, depth_reached
+from trunnion.plan.tool_choice import covered_by_few, depth_reached, without_slender
 from trunnion.progress import Progress
 
 MOST = 0.9
@@ -126,7 +126,8 @@ def end_mills_for(
             reach[str(n)] = _Reach.of(part_above, land, ranked, clearances, progress)
     progress.at(1.0, "end mills for all lands")
     fits = {
-        key: _for_land(part_above, each, ranked, share, progress) for key, each in reach.items()
+        key: without_slender(_for_land(part_above, each, ranked, share, progress))
+        for key, each in reach.items()
     }
     worth = {
         key for key, each in progress.each(reach.items()) if _is_worth(part_above, each.land, ball)
@@ -134,7 +135,7 @@ def end_mills_for(
     first = covered_by_few({key: found for key, found in fits.items() if key in worth}, kept)
     rest = covered_by_few(
         {
-            key: _for_rest(part_above, reach[key], tool, ranked, share, progress)
+            key: without_slender(_for_rest(part_above, reach[key], tool, ranked, share, progress))
             for key, tool in first.items()
         },
         tuple(first.values()),
