@@ -62,7 +62,7 @@ def next_tool(
 ) -> Tool | None:
     """Return the largest cutter in an operation's stead that fits, the shortest of these; None where there is none."""
     now = operation.cutter
-    forms = (now.form,) if operation.faces else ROUGH_FORMS
+    forms = ROUGH_FORMS if now.form in ROUGH_FORMS and not operation.faces else (now.form,)
     found = [
         t
         for t in job.milling_tools(process, forms)
