@@ -36,7 +36,9 @@ def plate(file: Path, *holes: dict[str, Any], length: float = 100.0, width: floa
     solid = cq.Workplane("XY").box(length, width, HIGH, centered=False)
     for h in holes:
         depth, radius = h["depth"], h["diameter"] / 2
-        solid = solid.cut(_cylinder(cq, h, radius, depth))
+        # A through hole goes on past the underside, so that no film stays.
+        more = 1.0 if h.get("through") else 0.0
+        solid = solid.cut(_cylinder(cq, h, radius, depth + more))
         if "point_angle" in h:
             cone = radius / np.tan(np.radians(h["point_angle"] / 2))
             tip = cq.Solid.makeCone(
@@ -60,9 +62,7 @@ def _at(cq: Any, h: dict[str, Any], depth: float) -> Any:
 
 
 def _cylinder(cq: Any, h: dict[str, Any], radius: float, depth: float) -> Any:
-    # A through hole goes on past the underside, so that no film stays.
-    more = 1.0 if h.get("through") else 0.0
-    made = cq.Solid.makeCylinder(radius, depth + more, _at(cq, h, 0.0), cq.Vector(0, 0, -1))
+    made = cq.Solid.makeCylinder(radius, depth, _at(cq, h, 0.0), cq.Vector(0, 0, -1))
     return cq.Workplane(made)
 
 

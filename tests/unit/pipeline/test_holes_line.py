@@ -112,3 +112,30 @@ def test_a_drill_too_deep_is_found_by_the_proof():
     assert verdict.outcome is Outcome.FAILED
     # The cone goes in by a millimetre along the axis, sin(70 degrees) of it across its flank.
     assert bad.gouge == approx(0.94, abs=0.07)
+
+
+STEPPED = (
+    hole(20, 15, 9, counterbore_diameter=15, counterbore_depth=6),
+    hole(80, 15, 9, counterbore_diameter=15, counterbore_depth=6),
+    hole(20, 45, 7.7),
+    hole(50, 15, 8, 9.0),
+    hole(50, 35, 25.0),
+    hole(80, 45, 9, 14.0, counterbore_diameter=16, counterbore_depth=8),
+)
+
+
+@pytest.mark.parametrize("dialect", ["linuxcnc", "apt"])
+def test_counterbores_flat_floors_and_milled_holes_are_proven(dialect):
+    session = proven(fixed(STEPPED), ("post.dialect", dialect))[1]
+    kinds = {o.kind for o in session.process.operations}
+    assert {"drill", "hole_mill", "hole_floor", "counterbore"} <= kinds
+    assert session.verdict.outcome is Outcome.PASSED
+    assert session.verdict.coverage == approx(1.0, abs=1e-4)
+    assert all(o.gouge <= 1e-6 and not o.rapids_in_stock for o in session.verdict.operations)
+
+
+def test_what_the_drill_leaves_on_a_flat_floor_is_not_told_where_it_is_milled():
+    session = proven(fixed(STEPPED))[1]
+    told = [f.code for f in session.records["toolpath"].findings]
+    assert "hole.floor" in {f.code for p in session.paths for f in p.findings}
+    assert "hole.floor" not in told

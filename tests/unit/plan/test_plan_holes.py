@@ -274,3 +274,46 @@ def test_drilling_data_come_from_the_table_and_know_their_power():
     assert data.power == approx(turn * data.speed * 8.0 * specific / 240_000, rel=1e-6)
     assert any("drilling table" in rule for rule in data.rules)
     assert any("thrust" in rule for rule in data.rules)
+
+
+def test_a_diameter_without_a_drill_is_milled():
+    process = route(walled(hole(30, 30, 7.7), hole(70, 30, 25.0)))
+    made = {o.feature: o for o in process.operations if o.kind == "hole_mill"}
+    assert set(made) == {"hole-01", "hole-02"} and not process.findings
+    assert all(o.strategy == "hole.mill" and o.tool.form == "flat" for o in made.values())
+    assert made["hole-01"].tool.diameter <= 0.8 * 7.7
+
+
+def test_a_drill_that_is_too_short_gives_way_to_an_end_mill_and_both_reasons_are_told():
+    deep = {**hole(30, 30, 3, 60.0), "through": True}
+    process = route(walled(deep))
+    text = next(f.text for f in process.findings if f.code == "route.no-cutter")
+    assert "flutes" in text and "end mill" in text
+
+
+def test_a_flat_floor_is_milled_after_its_drill():
+    process = route(walled(hole(30, 30, 8, 10.0), hole(70, 30, 8, 10.0), hole(50, 30, 8)))
+    (floor,) = (o for o in process.operations if o.kind == "hole_floor")
+    assert floor.all_features == ("hole-01", "hole-02")
+    assert "drill-hole-01" in floor.after
+    drive, _ = hole_drive(
+        floor,
+        walled(hole(30, 30, 8, 10.0), hole(70, 30, 8, 10.0))[1],
+        process,
+        process.setups[0].frame,
+    )
+    drill = process.operation("drill-hole-01").tool
+    # From half a millimetre over what the point has left.
+    assert drive.holes[0].depth == approx(drill.point_length + 0.5)
+
+
+def test_a_counterbore_is_milled_after_its_pilot():
+    sunk = {"counterbore_diameter": 15.0, "counterbore_depth": 6.0}
+    process = route(walled(hole(30, 30, 9, **sunk), hole(70, 30, 9, **sunk), hole(50, 30, 9)))
+    (wide,) = (o for o in process.operations if o.kind == "counterbore")
+    assert wide.all_features == ("hole-01", "hole-02")
+    order = [o.id for o in process.operations]
+    pilot = next(o for o in process.operations if o.kind == "drill" and "hole-01" in o.all_features)
+    assert pilot.id in wide.after and order.index(pilot.id) < order.index(wide.id)
+    shapes = hole_in(walled(hole(30, 30, 9, **sunk))[1].features[0], WORLD, WORLD)
+    assert (shapes.counterbore.bottom, shapes.counterbore.core) == (HIGH - 6.0, 9.0)

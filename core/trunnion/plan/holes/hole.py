@@ -33,7 +33,8 @@ class PlannedHole:
     """A round recess along z of a setup: a whole hole's bore, or its counterbore.
 
     `x`, `y` of the axis, `top` where it begins, `bottom` where its full diameter ends, all mm in the setup's frame; below a blind one comes
-    a cone of `point_angle` (degrees over both sides, 180: a flat floor). `faces` are the tags that finishing it makes.
+    a cone of `point_angle` (degrees over both sides, 180: a flat floor). `core` is the diameter that is free around the axis when a wider
+    part is cut, 0 where nothing is. `faces` are the tags that finishing it makes.
     """
 
     feature: str
@@ -44,6 +45,7 @@ class PlannedHole:
     diameter: float
     through: bool
     point_angle: float = FLAT
+    core: float = 0.0
     faces: tuple[int, ...] = ()
 
     @property
@@ -148,6 +150,7 @@ def _counterbore(feature: Feature, bore: PlannedHole) -> PlannedHole | None:
         bottom=bore.top - depth,
         diameter=diameter,
         through=False,
+        core=bore.diameter,
         faces=feature.with_role("counterbore_side", "counterbore_floor"),
     )
 

@@ -15,13 +15,15 @@ from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
 from trunnion.plan.holes.hole import PlannedHole
 from trunnion.plan.prismatic.regions import SetupSpace
-from trunnion.plan.tool_choice import Candidates
+from trunnion.plan.tool_choice import Candidates, depth_reached
 from trunnion.units import trimmed
 
 CHIP_SPACE = 0.5
 """Of the diameter: how much of the flutes stays over a hole's mouth, so that chips get out."""
 AROUND = 60.0
 """mm: how far around a hole the part is looked at; holders are less wide."""
+NEAR_MILL = 0.5
+"""How much smaller than the largest end mill that fits one may be, over its diameter, when it serves other operations too."""
 LARGEST_MILL = 0.8
 """Of a hole's diameter: a wider end mill has no room to go round in."""
 
@@ -114,6 +116,43 @@ def drills_for(
             remedy=f"add a longer drill of D {size} to the tools folder, or drill before what stands there is left",
         )
     return Candidates(tools=tuple(sorted(free, key=_order_of(hole))))
+
+
+def mills_for(
+    hole: PlannedHole, tools: Sequence[Tool], around: HoleSpace, top: float, breakthrough: float
+) -> Candidates:
+    """Return the flat end mills that mill a hole, the largest first; each test that leaves none says what would be needed.
+
+    `top` is the height from which the cutter goes down in the hole: the mouth of all of it, where `hole` is its floor alone.
+    """
+    size = trimmed(hole.diameter, 3)
+    tip = hole.bottom - (breakthrough if hole.through else 0.0)
+    small = [t for t in tools if t.form == "flat" and t.diameter <= LARGEST_MILL * hole.diameter]
+    if not small:
+        return Candidates(
+            tools=(),
+            reason=f"no end mill is small enough for D {size}",
+            remedy=f"add an end mill up to D {trimmed(LARGEST_MILL * hole.diameter, 2)} to the tools folder",
+        )
+    long = [t for t in small if depth_reached(t) >= top - tip + around.clearance]
+    if not long:
+        return Candidates(
+            tools=(),
+            reason=f"no end mill that gets into D {size} reaches {trimmed(top - tip, 1)} mm deep",
+            remedy=f"add a longer end mill up to D {trimmed(LARGEST_MILL * hole.diameter, 2)} to the tools folder",
+        )
+    free = [t for t in long if around.has_space(hole, t, tip, hole.radius - t.radius)]
+    if not free:
+        return Candidates(
+            tools=(),
+            reason=f"the holder of every end mill for D {size} would come too near to what stands around it",
+            remedy="add a longer end mill to the tools folder",
+        )
+    largest = max(t.diameter for t in free)
+    near = [t for t in free if t.diameter >= NEAR_MILL * largest]
+    return Candidates(
+        tools=tuple(sorted(near, key=lambda t: (-t.diameter, depth_reached(t), t.name)))
+    )
 
 
 def _order_of(hole: PlannedHole) -> Callable[[Tool], tuple[float, float, float, str]]:

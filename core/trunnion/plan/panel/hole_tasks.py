@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from trunnion.findings import Finding, Refused, error, face_tags
+from trunnion.findings import Finding, Refused, error, face_tags, warning
 from trunnion.geometry.plane.region import EMPTY_REGION
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
 from trunnion.plan.holes.drive import not_reached
 from trunnion.plan.holes.hole import HoleShape, PlannedHole, hole_in
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
-from trunnion.plan.holes.tools import HoleSpace, drills_for
+from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
 from trunnion.settings import choose
@@ -25,11 +25,13 @@ SAME_SIZE = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HoleFit:
-    """A hole, or the part of one that a stage cuts, with its feature and the tools that fit it."""
+    """A hole, or the part of one that a stage cuts, with its feature and the tools that fit it; `faces` that are finished, None: all of the
+    hole's own."""
 
     feature: Feature
     hole: PlannedHole
     found: Candidates
+    faces: tuple[int, ...] | None = None
 
 
 @dataclass(slots=True, kw_only=True)
@@ -41,6 +43,7 @@ class HolePlanning:
     settings: HoleSettings
     drilling: DrillSettings
     drills: dict[str, Candidates]
+    mills: dict[str, Candidates]
 
 
 def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) -> HolePlanning:
@@ -52,6 +55,7 @@ def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) 
             settings=choose(HoleSettings, state.choices),
             drilling=choose(DrillSettings, state.choices),
             drills={},
+            mills={},
         )
     known: HolePlanning = state.holes
     for feature in state.progress.each(features):
@@ -75,7 +79,14 @@ def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) 
             known.settings.diameter_tolerance,
             known.drilling.breakthrough,
         )
+        if not known.drills[feature.id].tools:
+            known.mills[feature.id] = _mills(state, known, shape.bore, shape.bore.top)
     return known
+
+
+def _mills(state: PanelPlanState, known: HolePlanning, hole: PlannedHole, top: float) -> Candidates:
+    tools = state.shop.tools_for(state.material.iso_group, "finish")
+    return mills_for(hole, tools, known.around, top, known.drilling.breakthrough)
 
 
 def _of_stage(
@@ -113,13 +124,70 @@ def _drill_tasks(
     state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     known = _planning(state, stage, features)
+    # A hole without a drill is milled where an end mill gets into it; where none does, both reasons are told.
     fitted = [
-        HoleFit(feature=f, hole=shape.bore, found=known.drills[f.id])
+        HoleFit(
+            feature=f, hole=shape.bore, found=_either(known.drills[f.id], known.mills.get(f.id))
+        )
         for f, shape in _of_stage(known, stage, features)
+        if known.drills[f.id].tools or not known.mills[f.id].tools
     ]
     return _tasks(
         state, stage, fitted, lambda hole: (*_size(hole), _deep_class(hole, known.drilling)), _own
     )
+
+
+def _either(drills: Candidates, mills: Candidates | None) -> Candidates:
+    """Return the drills of a hole, or why neither a drill nor an end mill fits it."""
+    if drills.tools or mills is None:
+        return drills
+    return Candidates(
+        tools=(),
+        reason=f"{drills.reason}; {mills.reason}",
+        remedy=f"{drills.remedy}, or {mills.remedy}",
+    )
+
+
+def _mill_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    known = _planning(state, stage, features)
+    fitted = [
+        HoleFit(feature=f, hole=shape.bore, found=known.mills[f.id])
+        for f, shape in _of_stage(known, stage, features)
+        if f.id in known.mills and known.mills[f.id].tools
+    ]
+    return _tasks(state, stage, fitted, _size, _own)
+
+
+def _floor_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    """Ask for the flat floors of holes that drills have left their point in."""
+    known = _planning(state, stage, features)
+    fitted = [
+        HoleFit(
+            feature=f,
+            hole=shape.bore,
+            found=_mills(state, known, shape.bore, shape.bore.top),
+            faces=f.with_role("bottom"),
+        )
+        for f, shape in _of_stage(known, stage, features)
+        if shape.bore.is_flat and known.drills[f.id].tools
+    ]
+    return _tasks(state, stage, fitted, _size, _own, no_floor_tool)
+
+
+def _counterbore_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    known = _planning(state, stage, features)
+    fitted = [
+        HoleFit(feature=f, hole=wide, found=_mills(state, known, wide, wide.top), faces=wide.faces)
+        for f, shape in _of_stage(known, stage, features)
+        if (wide := shape.counterbore) is not None
+    ]
+    return _tasks(state, stage, fitted, _size, _own)
 
 
 def _size(hole: PlannedHole) -> tuple[object, ...]:
@@ -133,7 +201,7 @@ def _deep_class(hole: PlannedHole, settings: DrillSettings) -> int:
 
 
 def _own(fitted: HoleFit) -> tuple[int, ...]:
-    return fitted.hole.faces
+    return fitted.hole.faces if fitted.faces is None else fitted.faces
 
 
 def _no_faces(fitted: HoleFit) -> tuple[int, ...]:
@@ -146,6 +214,7 @@ def _tasks(
     fitted: Iterable[HoleFit],
     size_of: Callable[[PlannedHole], tuple[object, ...]],
     faces_of: Callable[[HoleFit], tuple[int, ...]],
+    told: Callable[[Stage, Sequence[HoleFit], str, str], Finding] | None = None,
 ) -> list[OperationTask]:
     """Return a task for all holes of one size that one tool serves; holes that no tool fits become findings, one for each reason."""
     groups: dict[tuple[object, ...], list[HoleFit]] = {}
@@ -156,7 +225,8 @@ def _tasks(
         else:
             missing.setdefault((one.found.reason, one.found.remedy), []).append(one)
     state.findings += [
-        no_tool(stage, holes, reason, remedy) for (reason, remedy), holes in missing.items()
+        (told or no_tool)(stage, holes, reason, remedy)
+        for (reason, remedy), holes in missing.items()
     ]
     return [
         _task(stage, holes, tools, faces_of)
@@ -200,7 +270,7 @@ def _task(
         height=deepest,
         width=hole.diameter,
         found=Candidates(tools=tools),
-        why=f"{number} of D {trimmed(hole.diameter, 3)}, up to {trimmed(deepest, 2)} mm deep: its flutes reach their bottoms, and "
+        why=f"{number} of D {trimmed(hole.diameter, 3)}, up to {trimmed(deepest, 2)} mm deep: it reaches their bottoms, and "
         "shank and holder keep clear of what stands around them.",
     )
 
@@ -217,7 +287,19 @@ def no_tool(stage: Stage, holes: Sequence[HoleFit], reason: str, remedy: str) ->
     )
 
 
+def no_floor_tool(stage: Stage, holes: Sequence[HoleFit], reason: str, remedy: str) -> Finding:
+    """Return the warning that drills' points stay in flat holes: no end mill fits these."""
+    found = no_tool(stage, holes, reason, remedy)
+    return warning(found.code, found.text, *found.where, remedy=found.remedy)
+
+
 HOLE_TASK_MAKERS: Mapping[
     str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]
-] = {"spot": _spot_tasks, "drill": _drill_tasks}
+] = {
+    "spot": _spot_tasks,
+    "drill": _drill_tasks,
+    "hole_mill": _mill_tasks,
+    "hole_floor": _floor_tasks,
+    "counterbore": _counterbore_tasks,
+}
 """The rule behind each word that a typical plan gives for the tool of a stage on holes."""

@@ -22,6 +22,7 @@ from trunnion.plan.cutting.milling import (
 )
 from trunnion.plan.cutting.power import DRILL
 from trunnion.plan.feasibility import too_large
+from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
 from trunnion.plan.panel.fallbacks import (
     behind_rest_roughing,
     best_fit,
@@ -59,6 +60,12 @@ __all__ = ["RouteSettings", "make_route"]
 
 FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
 """Width of a face mill's path over its diameter, of a floor's over the cutter's flat, and axial step of a wall over the diameter."""
+
+
+HOLE_MILLING = (BORE, FLOOR, COUNTERBORE)
+"""Kinds of operations that mill holes along helices."""
+HELIX_DEPTH = 0.2
+"""Depth of one turn of a helix in a hole over the cutter's diameter: the first ring cuts all of its width."""
 
 
 def make_route(
@@ -269,6 +276,9 @@ def _engagement(
         return _even(
             task.height, min(tool.flank_step(task.height), WALL_STEP * tool.diameter)
         ), max(allowance, tolerance.SEW)
+    if kind in HOLE_MILLING:
+        # Each turn of the helix takes a slice, ring by ring from the middle outwards.
+        return HELIX_DEPTH * tool.diameter, rough_width
     if kind == "foot":
         return task.height, task.height
     if kind in ("rib_top", "island_top"):

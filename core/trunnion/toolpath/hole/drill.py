@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.findings import Finding, remark, warning
+from trunnion.findings import Finding, remark
 from trunnion.geometry.arrays import Floats
 from trunnion.model.motion.cycle import BACK_OFF, Cycle, CycleKind
 from trunnion.model.motion.drilling import drilled
@@ -24,7 +24,8 @@ from trunnion.plan.holes.tools import tip_of
 from trunnion.progress import Progress
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
-from trunnion.toolpath.motion.link import RIM, lowest_tip
+from trunnion.toolpath.motion.hole_access import kept_off
+from trunnion.toolpath.motion.link import lowest_tip
 from trunnion.toolpath.motion.tour import short_tour
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import trimmed
@@ -47,7 +48,7 @@ class HoleCycle:
         return np.array([self.hole.x, self.hole.y, self.plane])
 
 
-@strategy(settings=DrillSettings, drive=HoleDrive, leaves=("hole.floor", "hole.point"))
+@strategy(settings=DrillSettings, drive=HoleDrive, leaves=("hole.floor",))
 def drill(
     drive: HoleDrive,
     tool: Tool,
@@ -67,7 +68,7 @@ def drill(
             if drive.kind == SPOT
             else tip_of(hole, tool, settings.breakthrough)
         )
-        blocked = _blocked(builder, hole, tip)
+        blocked = kept_off(builder, hole, tip)
         if blocked is not None:
             findings.append(blocked)
             continue
@@ -148,35 +149,6 @@ def _rapid(position: Floats) -> Toolpath:
         centre=np.full((1, 3), np.nan),
         feed=np.zeros(1),
         mark=np.array([Mark.RETRACT]),
-    )
-
-
-def _blocked(builder: PathBuilder, hole: PlannedHole, tip: float) -> Finding | None:
-    """Return the finding on a hole where shank, holder or fixtures keep the tool from its bottom, None where nothing does."""
-    tool, stock = builder.tool, builder.stock()
-    for above, radius in tool.rings()[1:]:
-        # Cells at the rim may straddle a wall that the tool was chosen to pass.
-        seen = max(radius - RIM * stock.cell, stock.cell)
-        high = stock.height(hole.position, hole.position, seen) - (tip + above)
-        if high > tolerance.COINCIDENT:
-            return _kept_up(
-                hole, tool, f"what stands around it is {trimmed(float(high), 2)} mm too high"
-            )
-    if builder.fixtures is not None:
-        low = builder.fixtures.lowest_tip(tool, hole.position, hole.position)
-        if low > tip + tolerance.COINCIDENT:
-            return _kept_up(
-                hole, tool, f"a fixture keeps the tip {trimmed(float(low - tip), 2)} mm up"
-            )
-    return None
-
-
-def _kept_up(hole: PlannedHole, tool: Tool, why: str) -> Finding:
-    return warning(
-        "hole.kept-off",
-        f"{hole.feature} is not drilled: {tool.name} does not get to its bottom, {why}",
-        hole.feature,
-        remedy="choose a longer drill, clear what stands there before, or move the fixture",
     )
 
 
