@@ -139,3 +139,19 @@ def test_what_the_drill_leaves_on_a_flat_floor_is_not_told_where_it_is_milled():
     told = [f.code for f in session.records["toolpath"].findings]
     assert "hole.floor" in {f.code for p in session.paths for f in p.findings}
     assert "hole.floor" not in told
+
+
+SUNK = (
+    hole(20, 15, 6, countersink_diameter=12, countersink_angle=90),
+    hole(80, 15, 6, countersink_diameter=10, countersink_angle=90),
+    hole(20, 45, 5, countersink_diameter=9.5, countersink_angle=100),
+    hole(50, 15, 8, 9.0, point_angle=118, countersink_diameter=12, countersink_angle=90),
+)
+
+
+def test_countersinks_are_proven_and_stay_cycles_with_a_dwell():
+    session = proven(fixed(SUNK))[1]
+    assert session.verdict.outcome is Outcome.PASSED
+    assert session.verdict.coverage == approx(1.0, abs=1e-4)
+    text = next(f.text for f in session.posted if f.setup)
+    assert text.count("G82") == 2 and "P0.2" in text

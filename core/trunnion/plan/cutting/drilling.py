@@ -13,6 +13,11 @@ from trunnion.plan.cutting.power import NEWTON_METRES, drilling_power, drilling_
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, trimmed
 
+AXIAL = ("spot", "drill", "countersink")
+"""Kinds of operation whose tool cuts along its axis: their data are those of drilling."""
+SLOWER = {"countersink": 0.5}
+"""Share of the speed of drilling that other kinds take: a countersink has its edge over a long cone, and chatters (usual shop practice)."""
+
 
 def drilling_data(
     tool: Tool,
@@ -20,12 +25,13 @@ def drilling_data(
     table: DrillingTable,
     machine: Machine,
     settings: CuttingSettings,
+    kind: str = "drill",
 ) -> CuttingData:
-    """Return the data of an operation that drills into solid material, with a sentence for each number.
+    """Return the data of an operation of a kind (`AXIAL`) that drills into solid material, with a sentence for each number.
 
     The depth of cut of a drill is half its diameter (ISO 3002-3), its width the diameter; it is fed down at the feed itself.
     """
-    speed = table.speed * settings.speed_share
+    speed = table.speed * SLOWER.get(kind, 1.0) * settings.speed_share
     rules = [f"vc {trimmed(speed, 0)} m/min: drilling {table.title.lower()} ({table.name})"]
     spindle = turns_of(speed, tool.diameter)
     highest = min(machine.spindle_high, settings.spindle_limit)

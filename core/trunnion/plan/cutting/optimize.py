@@ -8,7 +8,7 @@ from dataclasses import replace
 from trunnion.model.material import Material
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.cutting.drilling import drilling_data
+from trunnion.plan.cutting.drilling import AXIAL, drilling_data
 from trunnion.plan.cutting.milling import (
     ROUGHING,
     CuttingSettings,
@@ -60,9 +60,14 @@ def _balanced(
     if operation.kind in ROUGHING and operation.kind != "face":
         depth = min(depth, roughing_depth(operation.cutter, material, settings))
         width = min(width, roughing_width(operation.cutter, material, settings))
-    if operation.cutter.form == DRILL:
+    if operation.kind in AXIAL or operation.cutter.form == DRILL:
         data = drilling_data(
-            operation.cutter, material, shop.drilling_for(material), machine, settings
+            operation.cutter,
+            material,
+            shop.drilling_for(material),
+            machine,
+            settings,
+            operation.kind,
         )
         return replace(operation, data=data)
     data = cutting_data(

@@ -76,11 +76,11 @@ def hole_drive(
     for id in operation.all_features:
         try:
             shape = hole_in(features[id], recognition.frame, setup)
-            hole = _part(operation, shape, process)
+            parts = _parts(operation, shape, process)
         except Refused as reason:
             findings.append(not_reached(features[id], str(reason)))
             continue
-        holes.append(hole)
+        holes += parts
         if operation.kind == COUNTERSINK and shape.countersink is not None:
             sinks.append(shape.countersink)
     drive = HoleDrive(
@@ -100,21 +100,22 @@ def not_reached(feature: Feature, reason: str) -> Finding:
     )
 
 
-def _part(operation: Operation, shape: HoleShape, process: ProcessTree) -> PlannedHole:
+def _parts(operation: Operation, shape: HoleShape, process: ProcessTree) -> tuple[PlannedHole, ...]:
     """Return what of a hole an operation cuts."""
     if operation.kind not in KINDS:
         raise Refused(
             f"{operation.id}: no holes are cut by operations of kind {operation.kind}; use one of {', '.join(KINDS)}"
         )
     if operation.kind == COUNTERBORE:
-        if shape.counterbore is None:
+        if not shape.counterbores:
             raise Refused(f"{shape.bore.feature}: it has no counterbore; correct the feature")
-        return shape.counterbore
+        return shape.counterbores
     if operation.kind == COUNTERSINK and shape.countersink is None:
         raise Refused(f"{shape.bore.feature}: it has no countersink; correct the feature")
     if operation.kind == FLOOR:
-        return below_point(shape.bore, _drilled_by(operation, shape.bore.feature, process))
-    return shape.bore
+        drilled = _drilled_by(operation, shape.bore.feature, process)
+        return (below_point(shape.bore, drilled),)
+    return (shape.bore,)
 
 
 def below_point(bore: PlannedHole, point_length: float) -> PlannedHole:

@@ -2,7 +2,9 @@
 
 The sizes are those of `docs/words.md` (hole): `x`, `y`, `top_z` of the mouth in the recognition's frame, `diameter`, `depth` from the mouth
 to the end of the full diameter, `through`, and where it has them `point_angle`, `counterbore_diameter` and `counterbore_depth`,
-`countersink_diameter` and `countersink_angle`. `direction` is the way out of the hole where that is not the frame's z.
+`countersink_diameter` and `countersink_angle`; further those of stepped holes (`diameters`, `step_depths`), of conical shoulders
+(`shoulder_angle`), ball-shaped bottoms (`bottom_radius`) and tapers (`taper_angle`). `direction` is the way out of the hole where that is
+not the frame's z.
 """
 
 from __future__ import annotations
@@ -86,10 +88,10 @@ class Countersink:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HoleShape:
-    """A hole's parts: the bore, and where it has them the counterbore and the countersink."""
+    """A hole's parts: the bore, and where it has them its counterbores, the narrowest and deepest first, and the countersink."""
 
     bore: PlannedHole
-    counterbore: PlannedHole | None = None
+    counterbores: tuple[PlannedHole, ...] = ()
     countersink: Countersink | None = None
 
 
@@ -105,6 +107,10 @@ def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
     x, y, top, diameter, depth = (_number(feature, name) for name in NEEDED)
     if diameter <= 0.0 or depth <= 0.0:
         raise Refused(f"{feature.id}: a hole's diameter and depth are above 0; correct the feature")
+    if _number(feature, "taper_angle") > 0.0:
+        raise Refused(
+            f"{feature.id}: its side is tapered, which neither a drill nor an end mill makes"
+        )
     out = _direction(feature)
     mouth = np.array([x, y, top])
     ends = setup.to_local(frame.to_world(np.stack([mouth, mouth - depth * out])))
@@ -128,37 +134,71 @@ def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
         bottom=bottom,
         diameter=diameter,
         through=through,
-        point_angle=_number(feature, "point_angle", FLAT),
+        point_angle=_point_angle(feature, 0.5 * diameter),
         faces=feature.with_role("side", "bottom"),
     )
     return HoleShape(
-        bore=bore, counterbore=_counterbore(feature, bore), countersink=_countersink(feature)
+        bore=bore, counterbores=_counterbores(feature, bore), countersink=_countersink(feature)
     )
 
 
-def _counterbore(feature: Feature, bore: PlannedHole) -> PlannedHole | None:
-    diameter, depth = (
-        _number(feature, f"counterbore_{name}", 0.0) for name in ("diameter", "depth")
+def _counterbores(feature: Feature, bore: PlannedHole) -> tuple[PlannedHole, ...]:
+    return tuple(
+        PlannedHole(
+            feature=feature.id,
+            x=bore.x,
+            y=bore.y,
+            top=bore.top,
+            bottom=bore.top - depth,
+            diameter=diameter,
+            through=False,
+            point_angle=_number(feature, "shoulder_angle", FLAT),
+            core=bore.diameter,
+            faces=feature.with_role("counterbore_side", "counterbore_floor"),
+        )
+        for diameter, depth in _steps(feature, bore)
     )
-    if diameter <= 0.0 or depth <= 0.0:
-        return None
-    return PlannedHole(
-        feature=feature.id,
-        x=bore.x,
-        y=bore.y,
-        top=bore.top,
-        bottom=bore.top - depth,
-        diameter=diameter,
-        through=False,
-        core=bore.diameter,
-        faces=feature.with_role("counterbore_side", "counterbore_floor"),
-    )
+
+
+def _steps(feature: Feature, bore: PlannedHole) -> list[tuple[float, float]]:
+    """Return diameter and depth of the wider parts at a hole's mouth, from the bore outwards.
+
+    Of three diameters and more, `diameters` with `step_depths` tell them from the mouth down; else the counterbore's own sizes.
+    """
+    diameters, depths = _word(feature, "diameters"), _word(feature, "step_depths")
+    if isinstance(diameters, tuple) and isinstance(depths, tuple):
+        steps = list(zip(map(float, diameters), map(float, depths), strict=False))
+    else:
+        steps = [(_number(feature, "counterbore_diameter"), _number(feature, "counterbore_depth"))]
+    found: list[tuple[float, float]] = []
+    for diameter, depth in steps:
+        if diameter <= bore.diameter + tolerance.SLIVER or depth <= 0.0:
+            break
+        found.append((diameter, depth))
+    return found[::-1]
 
 
 def _countersink(feature: Feature) -> Countersink | None:
     diameter = _number(feature, "countersink_diameter", 0.0)
     angle = _number(feature, "countersink_angle", 0.0)
     return Countersink(diameter=diameter, angle=angle) if diameter > 0.0 and angle > 0.0 else None
+
+
+def _point_angle(feature: Feature, radius: float) -> float:
+    """Return the angle of the cone below a hole's full diameter; in a ball's cap that of the cone that fits into it."""
+    ball = _number(feature, "bottom_radius")
+    if ball < radius - tolerance.SLIVER:
+        return _number(feature, "point_angle", FLAT)
+    height = ball - math.sqrt(max(ball**2 - radius**2, 0.0))
+    return math.degrees(2.0 * math.atan2(radius, height))
+
+
+def is_wider_behind(feature: Feature) -> bool:
+    """Return whether a hole has a counterbore or a countersink at its far end."""
+    return any(
+        _number(feature, f"back_{part}_diameter", 0.0) > 0.0
+        for part in ("counterbore", "countersink")
+    )
 
 
 def _is_stepped(feature: Feature) -> bool:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from trunnion import tolerance
 from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
-from trunnion.plan.holes.hole import PlannedHole
+from trunnion.plan.holes.hole import Countersink, PlannedHole
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.tool_choice import Candidates, depth_reached
 from trunnion.units import trimmed
@@ -26,6 +26,35 @@ NEAR_MILL = 0.5
 """How much smaller than the largest end mill that fits one may be, over its diameter, when it serves other operations too."""
 LARGEST_MILL = 0.8
 """Of a hole's diameter: a wider end mill has no room to go round in."""
+
+
+SAME_ANGLE = 0.5
+"""Degrees: a tool's cone whose angle differs by less from a hole's has that angle."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolCone:
+    """The cone at a tool's end: its `angle` in degrees over both sides, and its diameters mm at the tip (`narrow`) and where it ends."""
+
+    angle: float
+    narrow: float
+    wide: float
+
+
+def cone_of(tool: Tool) -> ToolCone | None:
+    """Return the cone that a form tool begins with, None where it begins with none."""
+    if tool.form != "form" or tool.outline[0][2] != 0.0:
+        return None
+    (r0, z0, _), (r1, z1, _) = tool.outline[:2]
+    if r1 <= r0 or z1 <= z0:
+        return None
+    angle = math.degrees(2.0 * math.atan2(r1 - r0, z1 - z0))
+    return ToolCone(angle=angle, narrow=2.0 * r0, wide=2.0 * r1)
+
+
+def sink_tip(hole: PlannedHole, sink: Countersink, cone: ToolCone) -> float:
+    """Return how deep the tip of a countersink's tool goes: its cone is as wide at the hole's mouth as the countersink."""
+    return hole.top - 0.5 * (sink.diameter - cone.narrow) / math.tan(math.radians(0.5 * sink.angle))
 
 
 @dataclass(slots=True, kw_only=True)
@@ -115,7 +144,10 @@ def drills_for(
             reason=f"shank or holder of every drill of D {size} would come too near to what stands around it",
             remedy=f"add a longer drill of D {size} to the tools folder, or drill before what stands there is left",
         )
-    return Candidates(tools=tuple(sorted(free, key=_order_of(hole))))
+    # A point of its own is what a blind hole asks for, before all that would save a tool.
+    own = [t for t in free if abs(t.point_angle - hole.point_angle) <= SAME_ANGLE]
+    chosen = free if hole.through or not own else own
+    return Candidates(tools=tuple(sorted(chosen, key=_order_of(hole))))
 
 
 def mills_for(
@@ -153,6 +185,47 @@ def mills_for(
     return Candidates(
         tools=tuple(sorted(near, key=lambda t: (-t.diameter, depth_reached(t), t.name)))
     )
+
+
+def sinks_for(
+    hole: PlannedHole, sink: Countersink, tools: Sequence[Tool], around: HoleSpace
+) -> Candidates:
+    """Return the tools that make a hole's countersink, the narrowest first; each test that leaves none says what would be needed."""
+    size = f"{trimmed(sink.angle, 1)} degrees"
+    cones = [(t, cone) for t in tools if (cone := cone_of(t)) is not None]
+    same = [(t, c) for t, c in cones if abs(c.angle - sink.angle) <= SAME_ANGLE]
+    wide = [
+        (t, c)
+        for t, c in same
+        if c.wide >= sink.diameter - tolerance.COINCIDENT
+        and c.narrow <= hole.diameter + tolerance.COINCIDENT
+    ]
+    if not wide:
+        return Candidates(
+            tools=(),
+            reason=f"the catalogue has no countersink of {size}"
+            + (f" that is {trimmed(sink.diameter, 3)} mm wide" if same else ""),
+            remedy=f"add a countersink of {size}, at least D {trimmed(sink.diameter, 3)}, to the tools folder",
+        )
+    free = []
+    for tool, cone in wide:
+        tip = sink_tip(hole, sink, cone)
+        ends = hole.through or tip >= hole.bottom
+        # Of what is wider than the cone at the mouth all stands over it.
+        if ends and around.has_space(hole, tool, tip) and _rim_is_free(hole, tool, around):
+            free.append(tool)
+    if not free:
+        return Candidates(
+            tools=(),
+            reason=f"every countersink of {size} would touch what stands around the hole or its bottom",
+            remedy="add a slimmer countersink to the tools folder",
+        )
+    return Candidates(tools=tuple(sorted(free, key=lambda t: (t.diameter, t.stickout, t.name))))
+
+
+def _rim_is_free(hole: PlannedHole, tool: Tool, around: HoleSpace) -> bool:
+    """Return whether the part leaves space for a tool's whole diameter just over a hole's mouth."""
+    return around.free_radius(hole, hole.top + tolerance.OFF_PLANE) >= tool.radius
 
 
 def _order_of(hole: PlannedHole) -> Callable[[Tool], tuple[float, float, float, str]]:

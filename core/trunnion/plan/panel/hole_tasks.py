@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trunnion.findings import Finding, Refused, error, face_tags, warning
 from trunnion.geometry.plane.region import EMPTY_REGION
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
 from trunnion.plan.holes.drive import not_reached
-from trunnion.plan.holes.hole import HoleShape, PlannedHole, hole_in
+from trunnion.plan.holes.hole import HoleShape, PlannedHole, hole_in, is_wider_behind
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
-from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for
+from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for, sinks_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
 from trunnion.settings import choose
@@ -64,7 +64,7 @@ def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) 
         known.drills[feature.id] = Candidates(tools=())
         try:
             shape = hole_in(feature, state.space.recognition.frame, state.space.setup.frame)
-            if not known.around.is_open(shape.counterbore or shape.bore):
+            if not known.around.is_open((shape.bore, *shape.counterbores)[-1]):
                 raise Refused(
                     f"{feature.id}: the part covers its mouth; it needs a setup that sees it open"
                 )
@@ -72,6 +72,13 @@ def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) 
             state.findings.append(not_reached(feature, str(reason)))
             continue
         known.shapes[feature.id] = shape
+        if is_wider_behind(feature):
+            state.findings.append(
+                not_reached(
+                    feature,
+                    f"{feature.id}: the wider part at its far end opens away from the tool",
+                )
+            )
         known.drills[feature.id] = drills_for(
             shape.bore,
             state.shop.tools_for(state.material.iso_group, "drill"),
@@ -183,11 +190,51 @@ def _counterbore_tasks(
 ) -> list[OperationTask]:
     known = _planning(state, stage, features)
     fitted = [
-        HoleFit(feature=f, hole=wide, found=_mills(state, known, wide, wide.top), faces=wide.faces)
+        HoleFit(
+            feature=f,
+            hole=shape.counterbores[0],
+            found=_mills(state, known, shape.counterbores[0], shape.bore.top),
+            faces=shape.counterbores[0].faces,
+        )
         for f, shape in _of_stage(known, stage, features)
-        if (wide := shape.counterbore) is not None
+        if shape.counterbores
     ]
+    # What gets down to the deepest step of a hole mills the others too.
     return _tasks(state, stage, fitted, _size, _own)
+
+
+def _countersink_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    known = _planning(state, stage, features)
+    tools = state.shop.tools_for(state.material.iso_group, "countersink")
+    fitted = [
+        HoleFit(
+            feature=f,
+            hole=replace(shape.bore, diameter=shape.countersink.diameter),
+            found=sinks_for(shape.bore, shape.countersink, tools, known.around),
+            faces=f.with_role("countersink"),
+        )
+        for f, shape in _of_stage(known, stage, features)
+        if shape.countersink is not None
+    ]
+    # Cones of one angle are cut by one tool, however wide: it goes as deep as each asks for.
+    angles = {f.feature.id: _sink_angle(known, f.feature.id) for f in fitted}
+    groups = [
+        [f for f in fitted if angles[f.feature.id] == a] for a in dict.fromkeys(angles.values())
+    ]
+    return [
+        # The narrowest that serves them all: a larger one would turn slower, and needs more space.
+        replace(task, found=replace(task.found, tools=task.found.tools[:1]))
+        for group in groups
+        for task in _tasks(state, stage, group, lambda hole: ("sink",), _own)
+        if task.found is not None
+    ]
+
+
+def _sink_angle(known: HolePlanning, id: str) -> float:
+    sink = known.shapes[id].countersink
+    return 0.0 if sink is None else round(sink.angle, 1)
 
 
 def _size(hole: PlannedHole) -> tuple[object, ...]:
@@ -214,7 +261,7 @@ def _tasks(
     fitted: Iterable[HoleFit],
     size_of: Callable[[PlannedHole], tuple[object, ...]],
     faces_of: Callable[[HoleFit], tuple[int, ...]],
-    told: Callable[[Stage, Sequence[HoleFit], str, str], Finding] | None = None,
+    report: Callable[[Stage, Sequence[HoleFit], str, str], Finding] | None = None,
 ) -> list[OperationTask]:
     """Return a task for all holes of one size that one tool serves; holes that no tool fits become findings, one for each reason."""
     groups: dict[tuple[object, ...], list[HoleFit]] = {}
@@ -225,7 +272,7 @@ def _tasks(
         else:
             missing.setdefault((one.found.reason, one.found.remedy), []).append(one)
     state.findings += [
-        (told or no_tool)(stage, holes, reason, remedy)
+        (report or no_tool)(stage, holes, reason, remedy)
         for (reason, remedy), holes in missing.items()
     ]
     return [
@@ -301,5 +348,6 @@ HOLE_TASK_MAKERS: Mapping[
     "hole_mill": _mill_tasks,
     "hole_floor": _floor_tasks,
     "counterbore": _counterbore_tasks,
+    "countersink": _countersink_tasks,
 }
 """The rule behind each word that a typical plan gives for the tool of a stage on holes."""

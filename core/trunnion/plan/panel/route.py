@@ -13,7 +13,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.drilling import drilling_data
+from trunnion.plan.cutting.drilling import AXIAL, drilling_data
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
@@ -241,9 +241,9 @@ def _data(
     state: PanelPlanState, task: OperationTask, tool: Tool, cutting: CuttingSettings
 ) -> CuttingData:
     """Return the cutting data that an operation begins with."""
-    if tool.form == DRILL:
+    if task.stage.kind in AXIAL or tool.form == DRILL:
         table = state.shop.drilling_for(state.material)
-        return drilling_data(tool, state.material, table, state.machine, cutting)
+        return drilling_data(tool, state.material, table, state.machine, cutting, task.stage.kind)
     depth, width = _engagement(state, task, tool, cutting)
     return cutting_data(
         tool,

@@ -28,16 +28,20 @@ def kept_off(
         seen = max(radius + aside - RIM * stock.cell, stock.cell)
         high = float(stock.height(at, at, seen)) - (tip + above)
         if high > tolerance.COINCIDENT:
-            return _told(builder, hole, f"what stands around it is {trimmed(high, 2)} mm too high")
+            return _kept_off(
+                builder, hole, f"what stands around it is {trimmed(high, 2)} mm too high"
+            )
     if builder.fixtures is not None:
-        ways = aside * np.eye(2)
-        low = max(builder.fixtures.lowest_tip(tool, at - way, at + way) for way in ways)
+        across = aside * np.eye(2)
+        low = max(builder.fixtures.lowest_tip(tool, at - side, at + side) for side in across)
         if low > tip + tolerance.COINCIDENT:
-            return _told(builder, hole, f"a fixture keeps the tip {trimmed(low - tip, 2)} mm up")
+            return _kept_off(
+                builder, hole, f"a fixture keeps the tip {trimmed(low - tip, 2)} mm up"
+            )
     return None
 
 
-def _told(builder: PathBuilder, hole: PlannedHole, why: str) -> Finding:
+def _kept_off(builder: PathBuilder, hole: PlannedHole, why: str) -> Finding:
     return warning(
         KEPT_OFF,
         f"{hole.feature} is not cut: {builder.tool.name} does not get to its bottom, {why}",
