@@ -2,31 +2,22 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import replace
-from importlib.metadata import EntryPoint
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
-from parts import ROOT
-from trunnion import registry
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.feature import FaceRole, Feature, Recognition
+from trunnion.model.session import Session
+from trunnion.pipeline import Engine
 
 HIGH = 20.0
 """mm: how thick the plates are."""
-
-
-def registered() -> None:
-    """Make the entry points of this tree known where the installed package is older and lacks them."""
-    points = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]
-    for group, entries in points.items():
-        known = registry._points(group.removeprefix("trunnion."))
-        for name, value in entries.items():
-            known.setdefault(name, EntryPoint(name=name, value=value, group=group))
 
 
 def plate(file: Path, *holes: dict[str, Any], length: float = 100.0, width: float = 60.0) -> Path:
@@ -133,3 +124,22 @@ def with_holes(recognition: Recognition, graph: FaceGraph, *holes: dict[str, Any
     kept = tuple(f for f in kept if f.faces)
     loose = set(recognition.unexplained) - own
     return replace(recognition, features=(*kept, *made)).with_unexplained(loose)
+
+
+@cache
+def holed_plate() -> tuple[Engine, Session]:
+    """Return an engine and the session of a plate with holes of every sort, up to its toolpaths; its features are made by hand."""
+    holes = (
+        hole(20, 15, 8),
+        hole(80, 15, 8, 10.0),
+        hole(20, 45, 9, counterbore_diameter=15, counterbore_depth=6),
+        hole(80, 45, 6, countersink_diameter=12, countersink_angle=90),
+        hole(50, 30, 7.7),
+    )
+    engine = Engine()
+    with TemporaryDirectory() as folder:
+        session = engine.open(plate(Path(folder) / "plate.step", *holes))
+    session = replace(session, choices={"recognize.family": "panel"})
+    session = engine.run(session, until="recognize")
+    made = with_holes(session.recognition, engine.context.part.graph(), *holes)
+    return engine, engine.run(replace(session, recognition=made), until="toolpath")

@@ -13,13 +13,11 @@ from tempfile import TemporaryDirectory
 import pytest
 from pytest import approx
 
-from holed import hole, plate, registered, with_holes
+from holed import hole, plate, with_holes
 from trunnion.model.motion.cycle import CycleKind
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import Engine
-
-registered()
 
 DRILLED = (
     hole(20, 15, 8),

@@ -146,8 +146,8 @@ def drills_for(
         )
     # A point of its own is what a blind hole asks for, before all that would save a tool.
     own = [t for t in free if abs(t.point_angle - hole.point_angle) <= SAME_ANGLE]
-    chosen = free if hole.through or not own else own
-    return Candidates(tools=tuple(sorted(chosen, key=_order_of(hole))))
+    fitting = free if hole.through or not own else own
+    return Candidates(tools=tuple(sorted(fitting, key=_order_of(hole))))
 
 
 def mills_for(

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.findings import Finding, warning
 from trunnion.model.motion.cycle import Cycle, CycleKind
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.holes.drive import HoleDrive
-from trunnion.plan.holes.tools import SAME_ANGLE, cone_of, sink_tip
+from trunnion.plan.holes.hole import Countersink, PlannedHole
+from trunnion.plan.holes.tools import SAME_ANGLE, ToolCone, cone_of, sink_tip
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
@@ -54,14 +56,14 @@ def countersink(
     findings: list[Finding] = []
     for hole, sink in progress.each(list(zip(drive.holes, drive.sinks, strict=True))):
         cone = cone_of(tool)
-        if cone is None or abs(cone.angle - sink.angle) > SAME_ANGLE or cone.wide < sink.diameter:
+        if cone is None or not _makes(cone, hole, sink):
             findings.append(
                 warning(
                     "hole.other-cone",
                     f"{hole.feature}: {tool.name} does not make its countersink of D {trimmed(sink.diameter, 3)}, "
                     f"{trimmed(sink.angle, 1)} degrees",
                     hole.feature,
-                    remedy="choose a countersink of that angle, at least as wide",
+                    remedy="choose a countersink of that angle, at least as wide, with a tip that goes into the hole",
                 )
             )
             continue
@@ -78,3 +80,12 @@ def countersink(
         return Planned(findings=tuple(findings))
     order = short_tour(np.array([c.hole.position for c in cycles]), progress)
     return Planned(path=cycle_path(builder, [cycles[k] for k in order]), findings=tuple(findings))
+
+
+def _makes(cone: ToolCone, hole: PlannedHole, sink: Countersink) -> bool:
+    """Return whether a tool's cone makes a countersink: of its angle, as wide, and its tip goes into the hole."""
+    return (
+        abs(cone.angle - sink.angle) <= SAME_ANGLE
+        and cone.wide >= sink.diameter - tolerance.COINCIDENT
+        and cone.narrow <= hole.diameter + tolerance.COINCIDENT
+    )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.findings import Finding, remark
+from trunnion import tolerance
+from trunnion.findings import Finding, remark, warning
 from trunnion.model.motion.cycle import BACK_OFF, Cycle, CycleKind
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -40,7 +41,7 @@ def drill(
     spots = drive.kind == SPOT
     for hole in progress.each(drive.holes):
         tip = spot_tip(hole, tool) if spots else tip_of(hole, tool, settings.breakthrough)
-        stopped = kept_off(builder, hole, tip)
+        stopped = (None if spots else _too_wide(hole, tool)) or kept_off(builder, hole, tip)
         if stopped is not None:
             findings.append(stopped)
             continue
@@ -68,6 +69,18 @@ def cycle_of(depth: float, deep: float, tool: Tool, settings: DrillSettings) -> 
         return Cycle(kind=CycleKind.DRILL, depth=depth)
     kind = CycleKind.PECK if times >= settings.peck_from else CycleKind.CHIP_BREAK
     return Cycle(kind=kind, depth=depth, peck=peck)
+
+
+def _too_wide(hole: PlannedHole, tool: Tool) -> Finding | None:
+    """Return the finding on a hole that a drill would make wider than the proof lets it."""
+    if tool.radius - hole.radius <= tolerance.GOUGE:
+        return None
+    return warning(
+        "hole.too-narrow",
+        f"{hole.feature} is not drilled: {tool.name} is wider than its {trimmed(hole.diameter, 3)} mm",
+        hole.feature,
+        remedy="choose a drill of the hole's diameter",
+    )
 
 
 def _left(hole: PlannedHole, tool: Tool) -> list[Finding]:

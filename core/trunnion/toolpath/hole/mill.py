@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.findings import Finding, remark
+from trunnion.findings import Finding, remark, warning
 from trunnion.geometry.arrays import Floats
 from trunnion.model.motion.toolpath import Mark
 from trunnion.model.operation import CuttingData
@@ -138,7 +138,7 @@ def _ring(
 def _too_wide(hole: PlannedHole, tool: Tool) -> Finding | None:
     if tool.radius <= hole.radius + tolerance.COINCIDENT:
         return None
-    return remark(
+    return warning(
         "hole.too-narrow",
         f"{hole.feature} is not cut: {tool.name} is wider than its {trimmed(hole.diameter, 3)} mm",
         hole.feature,

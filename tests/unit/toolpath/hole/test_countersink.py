@@ -17,7 +17,7 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 TOOLS = {t.name: t for t in load_shop().tools}
 
 
-def sunk(tool, *sinks, dwell=0.2):
+def sunk(tool, *sinks, dwell=0.2, bore=6.0):
     holes = tuple(
         PlannedHole(
             feature=f"hole-{n}",
@@ -25,7 +25,7 @@ def sunk(tool, *sinks, dwell=0.2):
             y=30.0,
             top=0.0,
             bottom=-20.0,
-            diameter=6.0,
+            diameter=bore,
             through=True,
         )
         for n in range(len(sinks))
@@ -57,10 +57,15 @@ def test_holes_of_one_angle_are_cut_each_to_its_own_depth_with_a_dwell():
 
 @pytest.mark.parametrize(
     ("tool", "sink"),
-    [("CS100 D12.4", (12.0, 90.0)), ("CS90 D8.3", (12.0, 90.0)), ("DR-K D6", (12.0, 90.0))],
-    ids=["another angle", "too narrow", "no cone"],
+    [
+        ("CS100 D12.4", (12.0, 90.0)),
+        ("CS90 D8.3", (12.0, 90.0)),
+        ("DR-K D6", (12.0, 90.0)),
+        ("CS90 D25", (12.0, 90.0)),
+    ],
+    ids=["another angle", "too narrow", "no cone", "a tip wider than the hole"],
 )
 def test_a_cutter_that_does_not_make_the_cone_leaves_it_and_says_so(tool, sink):
-    planned = sunk(tool, sink)
+    planned = sunk(tool, sink, bore=3.0 if tool == "CS90 D25" else 6.0)
     assert not len(planned.path)
     assert [f.code for f in planned.findings] == ["hole.other-cone"]

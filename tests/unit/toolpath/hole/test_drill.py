@@ -165,3 +165,9 @@ def test_a_tour_visits_all_and_is_near_the_shortest(points):
 
     best = min(way(t) for t in itertools.permutations(range(len(places))))
     assert way(order) <= 1.25 * best + 1e-9
+
+
+def test_a_drill_wider_than_the_hole_is_not_let_into_it():
+    planned = drilled(at(50, 30), cutter=tool("DR-K D10"))
+    assert not len(planned.path)
+    assert [f.code for f in planned.findings] == ["hole.too-narrow"]
