@@ -7,10 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lxml import etree
 from pytest import approx
 
 from flat_parts import FlatPart, Prism, blank_of
 from holed import HIGH, feature, hole
+from programs import part_info
 from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.plane.region import Region
@@ -20,10 +22,13 @@ from trunnion.plan.holes.hole import hole_in
 from trunnion.plan.holes.tools import HoleSpace, drills_for, tip_of
 from trunnion.plan.panel.route import RouteSettings, make_route
 from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.plan.repair.contract import RepairJob
+from trunnion.plan.repair.tool_change import next_tool
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.shop import load_shop
+from trunnion.store.process import process_xml
 
 SHOP = load_shop()
 DRILLS = SHOP.tools_for("N", "drill")
@@ -371,3 +376,27 @@ def test_what_opens_away_at_the_far_end_is_told_and_the_hole_drilled():
     process = route(walled(sizes))
     assert [o.kind for o in process.operations if o.feature == "hole-01"] == ["drill"]
     assert "far end" in next(f.text for f in process.findings if f.code == "hole.not-reached")
+
+
+def test_the_process_tree_names_all_features_of_an_operation():
+    process = route(walled(*EQUAL))
+    root = etree.fromstring(process_xml(process, part_info()))
+    (equal,) = root.xpath("operation[@id='drill-hole-01']")
+    assert [e.get("id") for e in equal.findall("feature")] == ["hole-02", "hole-04"]
+    (single,) = root.xpath("operation[@id='drill-hole-03']")
+    assert not single.findall("feature")
+
+
+def test_a_fix_changes_no_drill_for_one_of_another_shape():
+    sunk = hole(50, 20, 6, countersink_diameter=12, countersink_angle=90)
+    process = route(walled(*EQUAL, sunk), **{"holes.spot": True})
+    job = RepairJob(shop=SHOP, choices={})
+    for o in (o for o in process.operations if o.tool.form in ("drill", "form")):
+        other = next_tool(process, o, job, lambda t: True)
+        assert other is None or (other.diameter, other.point_angle, other.outline) == (
+            o.tool.diameter,
+            o.tool.point_angle,
+            o.tool.outline,
+        )
+    spot = next(o for o in process.operations if o.kind == "spot")
+    assert next_tool(process, spot, job, lambda t: True) is None
