@@ -12,6 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from holed import holed_plate
 from subjects import PLANNERS, STRATEGIES, check_cancel, check_settings, is_one_line, own, until
 from trunnion import registry
 from trunnion.model.motion.program import ProgramSection
@@ -67,11 +68,11 @@ def declared_drive(name) -> type:
 @cache
 def case(name) -> Case:
     """Return the case of a strategy: an operation of its own, else one of the same class of drive."""
-    chosen = [(f, o) for f in PLANNERS for o in until(f, "toolpath").process.operations]
-    mine = [(f, o) for f, o in chosen if o.strategy == name]
-    alike = [(f, o) for f, o in chosen if declared_drive(o.strategy) is declared_drive(name)]
-    family, operation = mine[-1] if mine else min(alike, key=finished_area)
-    engine, session = own(family)[0], until(family, "toolpath")
+    parts = [(own(f)[0], until(f, "toolpath")) for f in PLANNERS]
+    mine, alike = of_strategy(name, parts)
+    if not alike:
+        mine, alike = of_strategy(name, [holed_plate()])
+    engine, session, operation = mine[-1] if mine else min(alike, key=finished_area)
     rows = [o.id for o in session.process.operations]
     before = session.process.operations[: rows.index(operation.id)]
     strategy = registry.get("strategies", name)
@@ -84,10 +85,20 @@ def case(name) -> Case:
     return Case(engine, replace(session, process=process), operation, bool(mine))
 
 
+def of_strategy(name, parts):
+    """Return the operations of planned parts by a strategy, and those that are driven by the same class of geometry: each with its engine
+    and session."""
+    chosen = [(e, s, o) for e, s in parts for o in s.process.operations]
+    return (
+        [c for c in chosen if c[2].strategy == name],
+        [c for c in chosen if declared_drive(c[2].strategy) is declared_drive(name)],
+    )
+
+
 def finished_area(chosen) -> float:
-    """Return the area in mm2 that an operation of a family's small part finishes; infinite where it finishes none."""
-    family, operation = chosen
-    area = own(family)[0].context.part.graph().area
+    """Return the area in mm2 that an operation of a small part finishes; infinite where it finishes none."""
+    engine, _, operation = chosen
+    area = engine.context.part.graph().area
     return float(area[np.array(operation.faces) - 1].sum()) if operation.faces else np.inf
 
 
@@ -159,6 +170,12 @@ def scaled(tool, share):
     length = max(tool.flute_length, 0.5 * share * tool.diameter)
     high = ("flute_length", "neck_length", "stickout", "gauge_length")
     sizes = {f: getattr(tool, f) * share for f in wide}
+    if tool.outline:
+        length = share * tool.flute_length
+        top = tool.flute_length + length - tool.flute_length
+        sizes["outline"] = tuple((share * r, share * z, b) for r, z, b in tool.outline[:-1]) + (
+            (share * tool.outline[-1][0], top, 0.0),
+        )
     return replace(
         tool, **sizes, **{f: getattr(tool, f) + length - tool.flute_length for f in high}
     )

@@ -34,6 +34,21 @@ class Material:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DrillingTable:
+    """What drills bear in a group of materials, or in one: `name` is the group's or the material's.
+
+    `speed` vc m/min; `feeds` rows (diameter, smallest, largest feed a revolution) mm, `feed_share` where between the two.
+    """
+
+    name: str
+    title: str
+    speed: float
+    feeds: tuple[tuple[float, float, float], ...]
+    feed_share: float
+    source: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Axis:
     """One machine axis: limits and speeds in mm, mm/min, mm/s2 (degrees for rotary ones).
 

@@ -98,7 +98,7 @@ class Operation:
     `choices` the values of the strategy's settings by full key; `rules` why this operation, tool and order; `after` the ids of operations
     that must come before it; `direction`, in the setup's frame, where the tool comes from (3 + 2 axes where that is not z); `by_hand` marks
     a person's change; `suppressed` keeps it in the tree without cutting; `avoid` are boxes in its cutting frame that its tip keeps out of
-    (a tool that leans knows none).
+    (a tool that leans knows none); `others` the ids of further features that it machines with the same tool and data, as of equal holes.
     """
 
     id: str
@@ -117,6 +117,12 @@ class Operation:
     group: str = ""
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
     avoid: tuple[KeepOutBox, ...] = added((), written=False)
+    others: tuple[str, ...] = added((), written=False)
+
+    @property
+    def all_features(self) -> tuple[str, ...]:
+        """The ids of all features that it machines."""
+        return (self.feature, *self.others)
 
     @property
     def cutter(self) -> Tool:

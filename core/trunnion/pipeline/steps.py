@@ -30,7 +30,8 @@ from trunnion.pipeline.step import Result, Step, Work
 from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settings
 from trunnion.plan.blank import BlankSettings
 from trunnion.plan.contract import RouteJob, planner_for
-from trunnion.plan.cutting.milling import CuttingSettings, balance
+from trunnion.plan.cutting.milling import CuttingSettings
+from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.peak import overloads
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.setups import SetupSettings, make_setups
@@ -260,7 +261,15 @@ def _operations_without_data(session: Session) -> tuple[Any, ...]:
     if session.process is None:
         return ()
     return tuple(
-        (o.id, o.strategy, o.feature, o.tool, dict(o.choices), o.by_hand, o.suppressed)
+        (
+            o.id,
+            o.strategy,
+            o.all_features,
+            o.tool,
+            dict(o.choices),
+            o.by_hand,
+            o.suppressed,
+        )
         for o in session.process.operations
     )
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
 
 from trunnion.findings import BadInput
-from trunnion.model.material import Machine, Material
+from trunnion.model.material import DrillingTable, Machine, Material
 from trunnion.model.tool import Tool, TurningTool
 from trunnion.settings import digest
 from trunnion.shop.cutters import Cutter, load_cutters, load_holders
+from trunnion.shop.drilling import load_drilling
 from trunnion.shop.machines import load_machines
 from trunnion.shop.materials import load_materials
 from trunnion.shop.plans import TypicalPlan, load_plans
@@ -25,7 +26,8 @@ T = TypeVar("T")
 class Shop:
     """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`).
 
-    `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters.
+    `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters. `drilling` says by
+    ISO 513 group or by material what drills bear.
     """
 
     cutters: tuple[Cutter, ...]
@@ -33,6 +35,7 @@ class Shop:
     machines: Mapping[str, Machine]
     plans: Mapping[str, TypicalPlan]
     turning: tuple[TurningTool, ...] = ()
+    drilling: Mapping[str, DrillingTable] = field(default_factory=dict)
 
     @property
     def tools(self) -> tuple[Tool, ...]:
@@ -43,7 +46,13 @@ class Shop:
     def digest(self) -> str:
         """A short stable digest of everything in the catalogues: what was planned with another one is stale."""
         return digest(
-            self.cutters, self.materials, self.machines, self.plans, tuple(self.plans), self.turning
+            self.cutters,
+            self.materials,
+            self.machines,
+            self.plans,
+            tuple(self.plans),
+            self.turning,
+            self.drilling,
         )
 
     def tools_for(self, iso_group: str, use: str) -> tuple[Tool, ...]:
@@ -53,6 +62,16 @@ class Shop:
     def material(self, name: str) -> Material:
         """Return a material; raise `BadInput` with the known names."""
         return _named(self.materials, name, "material")
+
+    def drilling_for(self, material: Material) -> DrillingTable:
+        """Return what drills bear in a material: its own table, else that of its group; raise `BadInput` where there is neither."""
+        found = self.drilling.get(material.name) or self.drilling.get(material.iso_group)
+        if found is None:
+            raise BadInput(
+                f"nothing is known of drilling {material.name}: add a table for it, or for the group {material.iso_group}, "
+                "to the drilling folder"
+            )
+        return found
 
     def machine(self, name: str) -> Machine:
         """Return a machine; raise `BadInput` with the known names."""
@@ -79,8 +98,8 @@ class Shop:
 def load_shop(user_folder: Path | None = None) -> Shop:
     """Return the catalogues, checked; raise `BadInput` with file, entry and field of the first fault.
 
-    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `machines`, `plans`, each with TOML files)
-    and adds entries or replaces those of the same name. What is missing there is not needed.
+    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `machines`, `plans`, each with
+    TOML files) and adds entries or replaces those of the same name. What is missing there is not needed.
     """
     return Shop(
         cutters=load_cutters(load_holders(user_folder), user_folder),
@@ -88,6 +107,7 @@ def load_shop(user_folder: Path | None = None) -> Shop:
         machines=load_machines(user_folder),
         plans=load_plans(user_folder),
         turning=load_turning(user_folder),
+        drilling=load_drilling(user_folder),
     )
 
 

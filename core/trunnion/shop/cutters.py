@@ -12,7 +12,7 @@ from trunnion.model.tool import Holder, Tool
 from trunnion.shop.reading import CatalogueEntry, by_name, entries
 from trunnion.units import trimmed
 
-USES = ("face", "rough", "finish", "surface", "undercut", "drill")
+USES = ("face", "rough", "finish", "surface", "undercut", "drill", "spot", "countersink")
 END_MILL = "end mill"
 """A form that the corner radius decides: flat, bull or ball."""
 KINDS = (END_MILL, "taper", "barrel", "t-slot", "drill", "form")
@@ -30,7 +30,7 @@ _HALF_TURN, _QUARTER_TURN = 180.0, 90.0
 class Cutter:
     """A catalogue cutter with what it is made for: ISO 513 groups and uses.
 
-    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut` and `drill`.
+    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot` and `countersink`.
     """
 
     tool: Tool

@@ -98,6 +98,8 @@ def _add_operation(root: Any, operation: Operation) -> None:
         add(cutting, "rule", rule)
     for tag in operation.faces:
         add(element, "face", tag=str(tag))
+    for other in operation.others:
+        add(element, "feature", id=other)
     for before in operation.after:
         add(element, "after", operation=before)
     add_values(element, "choice", "key", operation.choices)

@@ -33,6 +33,10 @@ OTHER_WORDS = {
     # codes of findings that the strategies on curved faces share, beside what they share
     "trunnion/toolpath/contact_passes/choices.py": {"surface."},
     "trunnion/toolpath/contact_passes/upright/fixed_axis.py": {"surface."},
+    # codes of findings on holes, and the settings of drilling, which planners read to know how deep a drill goes
+    "trunnion/plan/holes/drive.py": {"hole."},
+    "trunnion/plan/holes/settings.py": {"hole."},
+    "trunnion/toolpath/motion/hole_access.py": {"hole."},
     # an element of the features' schema
     "trunnion/store/features.py": {"island"},
 }

@@ -46,7 +46,7 @@ def test_the_catalogue_has_cutters_from_4_to_25_mm_in_flat_and_bull_form():
     assert {t.corner_radius for t in tools} == {0, 0.5, 1, 1.5, 2, 2.5, 3, 4}
 
 
-def test_the_catalogue_has_cutters_of_every_form_but_special_ones():
+def test_the_catalogue_has_cutters_of_every_form():
     assert {t.form for t in load_shop().tools} == {
         "flat",
         "bull",
@@ -55,6 +55,7 @@ def test_the_catalogue_has_cutters_of_every_form_but_special_ones():
         "barrel",
         "t-slot",
         "drill",
+        "form",
     }
 
 

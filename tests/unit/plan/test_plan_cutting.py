@@ -14,12 +14,12 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
-    balance,
     chip_thinning,
     cutting_data,
     slenderness,
     table_feed,
 )
+from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.power import cutting_power
 from trunnion.settings import choose
 from trunnion.shop import load_shop

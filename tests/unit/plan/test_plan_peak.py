@@ -21,7 +21,8 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import OperationProof, Outcome, Verdict
 from trunnion.pipeline import Engine
-from trunnion.plan.cutting.milling import CuttingSettings, balance
+from trunnion.plan.cutting.milling import CuttingSettings
+from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.peak import LEAST_SHARE, overloads
 from trunnion.plan.cutting.power import cutting_power
 from trunnion.settings import choose, digest

@@ -152,14 +152,14 @@ def test_a_refused_pocket_takes_its_island_with_it():
     }
 
 
-def test_holes_are_named_together():
+def test_features_of_a_kind_that_no_stage_serves_are_named_together():
     part, recognition = panel()
-    holes = tuple(
-        Feature(id=f"hole-0{n}", kind="hole", faces=(FaceRole(role="side", face=7),))
+    slots = tuple(
+        Feature(id=f"slot-0{n}", kind="slot", faces=(FaceRole(role="side", face=7),))
         for n in (1, 2)
     )
-    (told,) = route((part, replace(recognition, features=(*recognition.features, *holes)))).findings
-    assert told.text == "hole-01, hole-02 not planned: the typical plan has no operation for a hole"
+    (told,) = route((part, replace(recognition, features=(*recognition.features, *slots)))).findings
+    assert told.text == "slot-01, slot-02 not planned: the typical plan has no operation for a slot"
 
 
 def test_a_corner_sharper_than_any_cutter_is_cut_by_the_slimmest_and_told():

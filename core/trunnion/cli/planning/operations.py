@@ -17,6 +17,7 @@ def operation_dict(operation: Operation) -> dict[str, Any]:
         "kind": operation.kind,
         "strategy": operation.strategy,
         "feature": operation.feature,
+        **({"others": list(operation.others)} if operation.others else {}),
         "setup": operation.setup,
         "direction": list(operation.direction),
         "tool": operation.tool.number,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from trunnion.geometry.arrays import Floats
@@ -11,17 +13,25 @@ from trunnion.model.motion.toolpath import CycleBlock, Mark, Motion, Toolpath
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def drilled(start: Floats, tops: Floats, cycle: Cycle, feed: float, axis: Floats = UP) -> Toolpath:
-    """Return the path of a cycle on holes whose axes meet the retract plane at `tops` (n, 3), one after the other from a start (3,).
+def drilled(
+    start: Floats,
+    tops: Floats,
+    cycle: Cycle | Sequence[Cycle],
+    feed: float,
+    axis: Floats = UP,
+) -> Toolpath:
+    """Return the path of a cycle, or of one a hole, on holes whose axes meet the retract plane at `tops` (n, 3), one after the other from
+    a start (3,).
 
     `feed` mm/min, of a tap its pitch times the spindle speed; `axis` (3,) unit, from the tip to the spindle.
     """
     parts: list[Expansion] = []
     blocks: list[CycleBlock] = []
     at, row = np.asarray(start, dtype=np.float64), 1
-    for top in np.asarray(tops, dtype=np.float64):
-        part = expanded(cycle, at, top, axis)
-        blocks.append(CycleBlock(first=row, last=row + len(part) - 1, cycle=cycle))
+    cycles = [cycle] * len(tops) if isinstance(cycle, Cycle) else cycle
+    for top, own in zip(np.asarray(tops, dtype=np.float64), cycles, strict=True):
+        part = expanded(own, at, top, axis)
+        blocks.append(CycleBlock(first=row, last=row + len(part) - 1, cycle=own))
         parts.append(part)
         at, row = part.position[-1], row + len(part)
     rapid = np.concatenate([[True], *(p.rapid for p in parts)])

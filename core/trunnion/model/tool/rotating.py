@@ -89,6 +89,14 @@ class Tool:
         return point_height(self.diameter, self.point_angle) if self.form == "drill" else 0.0
 
     @property
+    def full_width_height(self) -> float:
+        """Height above the tip from which on a cylinder of its radius is all inside of it: a drill's point, a form's widest place."""
+        if self.form == "form":
+            widest = max(r for r, _, _ in self.outline)
+            return next(z for r, z, _ in self.outline if r == widest)
+        return self.point_length
+
+    @property
     def widest_height(self) -> float:
         """Height of a barrel's widest circle: its tip's and its flank's arcs touch, one inside the other. 0 for other forms."""
         if self.form != "barrel":

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import replace
 
 from trunnion.model.material import Machine, Material
-from trunnion.model.operation import CuttingData, Operation
-from trunnion.model.process import ProcessTree
+from trunnion.model.operation import CuttingData
 from trunnion.model.spindle import surface_speed, turns_of
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.peak import with_peak
 from trunnion.plan.cutting.power import NEWTON_METRES, cutting_power
-from trunnion.settings import Value, choose, declared, setting, settings
-from trunnion.shop import Shop
+from trunnion.settings import setting, settings
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, trimmed
 
@@ -228,54 +223,3 @@ def cutting_data(
         rules=tuple(rules),
         widest=widest,
     )
-
-
-def balance(
-    process: ProcessTree, shop: Shop, settings: CuttingSettings, choices: Mapping[str, Value]
-) -> ProcessTree:
-    """Return the process with every operation's data computed again under these limits; what a person set by hand stays.
-
-    Every operation is told the peak of its load under a session's `choices` for the strategies.
-    """
-    material, done = shop.material(process.material), list[Operation]()
-    for operation in process.operations:
-        own = choose(CuttingSettings, {**choices, **operation.choices})
-        balanced = _balanced(
-            operation, process, material, shop, own if _of_its_own(operation) else settings
-        )
-        done.append(
-            with_peak(balanced, [o for o in done if o.setup == operation.setup], material, choices)
-        )
-    return replace(process, operations=tuple(done))
-
-
-def _of_its_own(operation: Operation) -> bool:
-    """Return whether an operation has limits of its own."""
-    return any(d.key in operation.choices for d in declared(CuttingSettings))
-
-
-def _balanced(
-    operation: Operation,
-    process: ProcessTree,
-    material: Material,
-    shop: Shop,
-    settings: CuttingSettings,
-) -> Operation:
-    if operation.by_hand:
-        return operation
-    machine = shop.machine(process.setup(operation.setup).machine)
-    depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
-    if operation.kind in ROUGHING and operation.kind != "face":
-        depth = min(depth, roughing_depth(operation.cutter, material, settings))
-        width = min(width, roughing_width(operation.cutter, material, settings))
-    data = cutting_data(
-        operation.cutter,
-        material,
-        machine,
-        operation.kind,
-        settings,
-        depth,
-        width,
-        operation.data.widest,
-    )
-    return replace(operation, data=data)

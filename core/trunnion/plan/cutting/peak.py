@@ -13,7 +13,7 @@ from trunnion import registry, tolerance
 from trunnion.findings import Finding, warning
 from trunnion.model.material import Material
 from trunnion.model.operation import CuttingData, Engagement, Operation
-from trunnion.plan.cutting.power import NEWTON_METRES, cutting_power
+from trunnion.plan.cutting.power import NEWTON_METRES, tool_power
 from trunnion.settings import Value, checked, choose
 from trunnion.units import trimmed
 
@@ -107,9 +107,7 @@ def _roughed_by(operation: Operation, earlier: Iterable[Operation]) -> Operation
 
 def _power(operation: Operation, data: CuttingData, met: Engagement, material: Material) -> float:
     feed, teeth = met.share * data.feed, operation.cutter.teeth * data.spindle
-    return cutting_power(
-        material, operation.cutter.diameter, feed / teeth, met.depth, met.width, feed
-    )
+    return tool_power(material, operation.cutter, feed / teeth, met.depth, met.width, feed)
 
 
 def _slower(data: CuttingData, peak: Foresee, material: Material) -> CuttingData:

@@ -8,10 +8,14 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Material
+from trunnion.model.tool import Tool
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 
 NEWTON_METRES = SECONDS_PER_MINUTE * WATTS_PER_KILOWATT / (2.0 * math.pi)
 """Torque in Nm of one kW at one turn a minute."""
+
+DRILL = "drill"
+"""The form of cutters that cut along their axis, with their whole diameter."""
 
 LEAST_CHIP = 1e-3
 """mm: the thinnest mean chip that Kienzle's formula is taken for."""
@@ -32,6 +36,37 @@ def cutting_power(
     return (
         depth * width * feed * specific / (SECONDS_PER_MINUTE * MM_PER_METRE * WATTS_PER_KILOWATT)
     )
+
+
+def tool_power(
+    material: Material, tool: Tool, feed_per_tooth: float, depth: float, width: float, feed: float
+) -> float:
+    """Return the power at a tool in kW: of a drill by its whole diameter, of others by depth and width of cut (mm)."""
+    if tool.form == DRILL:
+        return drilling_power(material, tool, feed_per_tooth, feed)
+    return cutting_power(material, tool.diameter, feed_per_tooth, depth, width, feed)
+
+
+def drilling_power(material: Material, tool: Tool, feed_per_tooth: float, feed: float) -> float:
+    """Return the power of drilling into solid material in kW, by Kienzle: P = A vf k_c with A = pi D^2 / 4.
+
+    It is Pc = f vc D k_c / 240000 of the makers' tables (Sandvik Coromant, Drilling formulas and definitions).
+    """
+    specific = float(specific_force(material, np.array(drill_chip(tool, feed_per_tooth))))
+    area = 0.25 * math.pi * tool.diameter**2
+    return area * feed * specific / (SECONDS_PER_MINUTE * MM_PER_METRE * WATTS_PER_KILOWATT)
+
+
+def drilling_thrust(material: Material, tool: Tool, feed_per_tooth: float) -> float:
+    """Return the feed force of drilling in N: F = k_c / 2 (D / 2) f sin(kappa) (same source); the chisel edge comes on top."""
+    chip = drill_chip(tool, feed_per_tooth)
+    specific = float(specific_force(material, np.array(chip)))
+    return 0.5 * specific * tool.radius * tool.teeth * chip
+
+
+def drill_chip(tool: Tool, feed_per_tooth: float) -> float:
+    """Return the chip thickness of a drill in mm: h = fz sin(kappa), kappa half its point angle."""
+    return feed_per_tooth * math.sin(math.radians(0.5 * tool.point_angle))
 
 
 def specific_force(material: Material, chip: Floats) -> Floats:

@@ -23,6 +23,8 @@ MOST_MISSED = 0.6
 
 def best_fit(state: PanelPlanState, task: OperationTask) -> tuple[OperationTask, Candidates]:
     """Return the task as it can be done, with its cutters; without any where nothing on the ladder fits."""
+    if task.found is not None:
+        return task, task.found
     tools, clearance = catalogue(state, task.stage), state.settings.reach_clearance
     wanted = candidates(task.requirement, tools, clearance, state.progress)
     if wanted.tools:

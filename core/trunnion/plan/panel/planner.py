@@ -9,8 +9,10 @@ from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.surface_drives import surface_driven
+from trunnion.plan.holes.drive import HoleDrive, holes_driven
+from trunnion.plan.holes.settings import DrillSettings, HoleSettings
 from trunnion.plan.panel.route import make_route
-from trunnion.plan.panel.tasks import TASK_MAKERS
+from trunnion.plan.panel.rules import TASK_MAKERS
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.settings import RouteSettings
@@ -21,10 +23,10 @@ if TYPE_CHECKING:
 
 
 class PanelPlanner:
-    """Plans pockets, ribs, islands and the outline; its plane operations are driven by features, through the part's sections."""
+    """Plans pockets, ribs, islands, holes and the outline; its plane operations are driven by features, through the part's sections."""
 
     name, noun = "panel", "panels"
-    settings: tuple[type, ...] = (RouteSettings,)
+    settings: tuple[type, ...] = (RouteSettings, HoleSettings, DrillSettings)
     cutter_rules: tuple[str, ...] = tuple(TASK_MAKERS)
 
     def can_plan(self, part: Part) -> None:
@@ -41,6 +43,7 @@ class PanelPlanner:
             job.context.part,
             job.settings_of(RouteSettings),
             job.progress,
+            choices=job.choices,
         )
 
     def drive(
@@ -48,7 +51,7 @@ class PanelPlanner:
     ) -> OperationDrive:
         """Return the drive that an operation's strategy needs."""
         return driven_by(
-            {PlaneDrive: _plane_driven, SurfaceDrive: surface_driven},
+            {PlaneDrive: _plane_driven, SurfaceDrive: surface_driven, HoleDrive: holes_driven},
             self,
             operation,
             needs,

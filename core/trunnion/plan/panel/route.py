@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from trunnion import tolerance
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
-from trunnion.model.operation import Operation
+from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.cutting.drilling import AXIAL, drilling_data
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
     roughing_depth,
     roughing_width,
 )
+from trunnion.plan.cutting.power import DRILL
 from trunnion.plan.feasibility import too_large
+from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
 from trunnion.plan.panel.fallbacks import (
     behind_rest_roughing,
     best_fit,
@@ -32,9 +35,9 @@ from trunnion.plan.panel.feasibility import (
     plannable,
     without_lonely_ribs,
 )
+from trunnion.plan.panel.rules import TASK_MAKERS
 from trunnion.plan.panel.tasks import (
     DEPENDENT,
-    TASK_MAKERS,
     OperationTask,
     PanelPlanState,
     floor_distance,
@@ -59,6 +62,12 @@ FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
 """Width of a face mill's path over its diameter, of a floor's over the cutter's flat, and axial step of a wall over the diameter."""
 
 
+HOLE_MILLING = (BORE, FLOOR, COUNTERBORE)
+"""Kinds of operations that mill holes along helices."""
+HELIX_DEPTH = 0.2
+"""Depth of one turn of a helix in a hole over the cutter's diameter: the first ring cuts all of its width."""
+
+
 def make_route(
     recognition: Recognition,
     sizes: tuple[SizeEntry, ...],
@@ -68,12 +77,14 @@ def make_route(
     part: SectionSource,
     settings: RouteSettings,
     progress: Progress,
+    *,
+    choices: Mapping[str, Value] | None = None,
 ) -> ProcessTree:
     """Return the process: operations in cutting order with tools numbered in the order of use, and findings on what is not planned.
 
     Features that the typical plan does not know, or whose walls a vertical cutter would gouge or leave, become findings
     (`route.not-planned`); their material stays and the proof counts it. A cutter that does not exist is an error (`route.no-cutter`), so
-    is a blank that the machine can't take (`route.travel`; nothing is planned then).
+    is a blank that the machine can't take (`route.travel`; nothing is planned then). `choices` are a session's settings by full key.
     """
     plan = typical_plan(shop, recognition.family, settings.plan, tuple(TASK_MAKERS))
     material = shop.material(blank.material)
@@ -97,6 +108,7 @@ def make_route(
             shop=shop,
             adjacent=near,
             loaded=tuple(o.cutter for o in operations),
+            choices=choices or {},
         )
         mine = [f for f in planned if _from_below(f, recognition, part) == (n > 0)]
         share = progress.part(n / len(setups), (n + 1) / len(setups))
@@ -171,16 +183,15 @@ def _before(
 ) -> frozenset[str]:
     """Return the ids that come before a task: earlier stages on and beside its feature, larger cutters, the pocket it is sunk in."""
     kinds = {f.id: f.kind for f in state.recognition}
-    near = {i for i in state.adjacent.get(task.feature, ()) if kinds[i] != kinds[task.feature]} | {
-        task.feature,
-        "blank",
-    }
+    near = {"blank", *task.all_features}
+    for id in task.all_features:
+        near |= {i for i in state.adjacent.get(id, ()) if kinds[i] != kinds[id]}
     own = next((f for f in state.recognition if f.id == task.feature), None)
     parent = parent_of(own, state.recognition) if own else None
     found: set[str] = set()
     for other in tasks:
         if other.stage.name in task.stage.after_all or (
-            other.stage.name in task.stage.after and other.feature in near
+            other.stage.name in task.stage.after and not near.isdisjoint(other.all_features)
         ):
             found.add(other.id)
         if (
@@ -201,7 +212,6 @@ def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]
         state.settings,
         choose(CuttingSettings, {}),
     )
-    depth, width = _engagement(state, task, tool, cutting)
     choices: dict[str, Value] = (
         {}
         if stage.finish
@@ -209,16 +219,6 @@ def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]
     )
     if stage.kind == "floor":
         choices["plane.floor.wall_distance"] = floor_distance(settings)
-    data = cutting_data(
-        tool,
-        state.material,
-        state.machine,
-        stage.kind,
-        cutting,
-        depth,
-        width,
-        _widest(task, settings),
-    )
     rules = (stage.rule, *_tool_rules(task, tool, settings))
     return Operation(
         id=task.id,
@@ -228,11 +228,32 @@ def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]
         setup=state.space.setup.name,
         tool=tool,
         group=stage.name,
-        data=data,
+        data=_data(state, task, tool, cutting),
         faces=task.faces if stage.finish else (),
         choices=choices,
         rules=rules,
         after=tuple(sorted(after)),
+        others=task.others,
+    )
+
+
+def _data(
+    state: PanelPlanState, task: OperationTask, tool: Tool, cutting: CuttingSettings
+) -> CuttingData:
+    """Return the cutting data that an operation begins with."""
+    if task.stage.kind in AXIAL or tool.form == DRILL:
+        table = state.shop.drilling_for(state.material)
+        return drilling_data(tool, state.material, table, state.machine, cutting, task.stage.kind)
+    depth, width = _engagement(state, task, tool, cutting)
+    return cutting_data(
+        tool,
+        state.material,
+        state.machine,
+        task.stage.kind,
+        cutting,
+        depth,
+        width,
+        _widest(task, state.settings),
     )
 
 
@@ -255,6 +276,9 @@ def _engagement(
         return _even(
             task.height, min(tool.flank_step(task.height), WALL_STEP * tool.diameter)
         ), max(allowance, tolerance.SEW)
+    if kind in HOLE_MILLING:
+        # Each turn of the helix takes a slice, ring by ring from the middle outwards.
+        return HELIX_DEPTH * tool.diameter, rough_width
     if kind == "foot":
         return task.height, task.height
     if kind in ("rib_top", "island_top"):
@@ -287,6 +311,8 @@ def _even(height: float, most: float) -> float:
 
 def _tool_rules(task: OperationTask, tool: Tool, settings: RouteSettings) -> tuple[str, ...]:
     requirement = task.requirement
+    if task.why:
+        return (f"{tool.name}: {task.why}",)
     notes = [
         f"{tool.name}: reaches {trimmed(depth_reached(tool), 2)} mm, {trimmed(requirement.depth, 2)} mm and "
         f"{trimmed(settings.reach_clearance, 2)} mm clearance are needed."

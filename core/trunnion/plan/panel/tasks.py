@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -24,8 +25,15 @@ from trunnion.plan.prismatic.regions import (
     touching,
 )
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.tool_choice import ToolRequirement, candidates, depth_reached, fits_through
+from trunnion.plan.tool_choice import (
+    Candidates,
+    ToolRequirement,
+    candidates,
+    depth_reached,
+    fits_through,
+)
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.settings import Value
 from trunnion.shop import Shop, Stage
 from trunnion.units import trimmed
 
@@ -53,7 +61,10 @@ DEPENDENT = ("rest", "corner", "foot")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OperationTask:
-    """An operation that is wanted: its id, stage, feature and requirement; the cutter comes later. `height` is what it goes down in all."""
+    """An operation that is wanted: its id, stage, feature and requirement; the cutter comes later. `height` is what it goes down in all.
+
+    Of equal holes one task serves several: `others` are the further features, `found` the tools that fit them all, and `why` says so.
+    """
 
     id: str
     stage: Stage
@@ -63,11 +74,20 @@ class OperationTask:
     faces: tuple[int, ...]
     height: float
     width: float
+    others: tuple[str, ...] = ()
+    found: Candidates | None = None
+    why: str = ""
+
+    @property
+    def all_features(self) -> tuple[str, ...]:
+        """The ids of all features that it machines."""
+        return (self.feature, *self.others)
 
 
 @dataclass(slots=True)
 class PanelPlanState:
-    """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way."""
+    """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way, `choices`
+    are a session's settings by full key, `holes` what the stages on holes have found out."""
 
     space: SetupSpace
     recognition: Recognition
@@ -80,6 +100,8 @@ class PanelPlanState:
     bands: dict[str, tuple[Band, ...]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     tools: dict[str, Tool] = field(default_factory=dict)
+    choices: Mapping[str, Value] = field(default_factory=dict)
+    holes: Any = None
     progress: Progress = NO_PROGRESS
 
 
@@ -438,7 +460,7 @@ def _profile_tasks(
     return found
 
 
-TASK_MAKERS: Mapping[
+PLANE_TASK_MAKERS: Mapping[
     str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]
 ] = {
     "face": _face_tasks,
@@ -452,7 +474,7 @@ TASK_MAKERS: Mapping[
     "profile_rough": _profile_tasks,
     "profile_finish": _profile_tasks,
 }
-"""The rule behind each word that a typical plan gives for its cutter."""
+"""The rule behind each word that a typical plan gives for the cutter of a stage of plane work."""
 
 
 def _task(

@@ -17,6 +17,8 @@ from trunnion.plan.freeform.keys import EARLIER
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.tool_choice import depth_reached
 
+SHAPES = ("drill", "form")
+"""Forms that leave their own shape in the part, whatever they cut."""
 MARGIN = 0.5
 """mm that a tool has to reach farther than what was measured."""
 WHY = "the proof asked for it"
@@ -62,7 +64,7 @@ def next_tool(
 ) -> Tool | None:
     """Return the largest cutter in an operation's stead that fits, the shortest of these; None where there is none."""
     now = operation.cutter
-    forms = (now.form,) if operation.faces else ROUGH_FORMS
+    forms = ROUGH_FORMS if now.form in ROUGH_FORMS and not operation.faces else (now.form,)
     found = [
         t
         for t in job.milling_tools(process, forms)
@@ -72,7 +74,14 @@ def next_tool(
 
 
 def _same_foot(tool: Tool, now: Tool, finishes: bool) -> bool:
-    """Return whether a cutter leaves the same shape at its foot: a ball's is its radius, and roughing leaves none."""
+    """Return whether a cutter leaves the same shape at its foot: a ball's is its radius, and roughing leaves none. A drill's or a form
+    cutter's shape is that of the hole."""
+    if now.form in SHAPES:
+        return (tool.diameter, tool.point_angle, tool.outline) == (
+            now.diameter,
+            now.point_angle,
+            now.outline,
+        )
     if not finishes:
         return tool.corner_radius <= max(now.corner_radius, tolerance.COINCIDENT)
     return now.form == "ball" or abs(tool.corner_radius - now.corner_radius) <= tolerance.COINCIDENT

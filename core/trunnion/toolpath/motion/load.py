@@ -12,14 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.material import Material
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.power import specific_force
+from trunnion.plan.cutting.power import DRILL, drill_chip, specific_force
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.motion.easing import PIECE, in_pieces
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -80,15 +80,27 @@ def load_of(
     )
     width = _width(section, square, tool)
     feed = np.divide(flow, section, out=np.zeros(len(pieces)), where=section > 0.0)
-    mean = feed / (tool.teeth * data.spindle) * mean_share(width, tool.diameter)
+    tooth = feed / (tool.teeth * data.spindle)
+    if tool.form == DRILL:
+        share = drill_chip(tool, 1.0)
+        mean, thickest = tooth * share, np.full(len(pieces), share)
+    else:
+        mean = tooth * mean_share(width, tool.diameter)
+        thickest = _thickest_share(pieces, tool, volume, squares, cuts)
     rate = flow / MM_PER_METRE
     power = rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT)
-    # A chip is thick where a cutter is engaged far round, for however short a way.
-    length = np.maximum(pieces.lengths(), tolerance.COINCIDENT)
-    here = _width(np.where(cuts, volume / length, 0.0), np.where(cuts, squares / length, 0.0), tool)
-    thickest = np.sin(np.minimum(contact_arc(here, tool.diameter), 0.5 * math.pi))
     tooth = np.where(cuts, pieces.feed, 0.0) / (tool.teeth * data.spindle)
     return PathLoad(rate=rate, chip=tooth * thickest, power=np.where(cuts, power, 0.0))
+
+
+def _thickest_share(
+    pieces: Toolpath, tool: Tool, volume: Floats, squares: Floats, cuts: Bools
+) -> Floats:
+    """Return the thickest chip of each piece (n,) over the feed per tooth: thick where a cutter is engaged far round, for however short a
+    way."""
+    length = np.maximum(pieces.lengths(), tolerance.COINCIDENT)
+    here = _width(np.where(cuts, volume / length, 0.0), np.where(cuts, squares / length, 0.0), tool)
+    return np.asarray(np.sin(np.minimum(contact_arc(here, tool.diameter), 0.5 * math.pi)))
 
 
 def contact_arc(width: Floats, diameter: float) -> Floats:

@@ -100,6 +100,8 @@ class PlanningStock:
         cut = digest(
             self.digest, path.position, path.motion, path.centre, tool.radius, tool.corner_radius
         )
+        if tool.full_width_height > 0.0:
+            cut = digest(cut, tool.full_width_height)
         return replace(made, heights=_fixed(made.heights), digest=cut)
 
     def working(self) -> PlanningStock:
@@ -116,6 +118,8 @@ class PlanningStock:
     ) -> tuple[Floats, Floats]:
         """Do as `lower`, and return also the height that each block takes off, squared and summed over the area in plan: (n,) mm4."""
         starts, ends, rows, error = chords(path)
+        if tool.full_width_height > 0.0:
+            starts, ends = _as_flat(starts, ends, tool.full_width_height)
         radius, gone = tool.radius - error, np.empty((len(starts), 2))
         # A cell's furthest corner counts: with a cutter as much wider its middle does.
         wider = heightfield.HALF_DIAGONAL * self.cell if self.centred else 0.0
@@ -221,6 +225,20 @@ def _positions(path: Toolpath, start: Floats, sweep: Floats, rows: Ints, share: 
     ray = start[at, :2] - path.centre[at, :2]
     points[arcs, :2] = path.centre[at, :2] + turn(ray, angle)
     return points
+
+
+def _as_flat(starts: Floats, ends: Floats, point: float) -> tuple[Floats, Floats]:
+    """Return straight moves (m, 3) of a tool with a point of a height (mm) as those of a flat one that leaves no less material.
+
+    What the point takes off below the full width stays. A move straight down takes all above its lower end, and not only, as slopes are
+    taken, what is above its higher one: drilling is nothing else.
+    """
+    lift = np.array([0.0, 0.0, point])
+    starts, ends = starts + lift, ends + lift
+    plumb = (starts[:, :2] == ends[:, :2]).all(axis=1)
+    low = np.minimum(starts[plumb, 2], ends[plumb, 2])
+    starts[plumb, 2], ends[plumb, 2] = low, low
+    return starts, ends
 
 
 def _fixed(array: Floats) -> Floats:

@@ -80,8 +80,10 @@ def load_of(
     feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
     rate = np.where(cuts, area, 0.0) * feed / MM_PER_METRE
     per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STOPPED)
-    chip = per_tooth * np.sin(np.minimum(angle, math.pi / 2.0))
-    mean = per_tooth * mean_share(angle)
+    axial = drill_shares(sections)[moves.section] if len(moves) else np.zeros(0)
+    drills = axial > 0.0
+    chip = per_tooth * np.where(drills, axial, np.sin(np.minimum(angle, math.pi / 2.0)))
+    mean = per_tooth * np.where(drills, axial, mean_share(angle))
     power = np.zeros(len(moves))
     if material is not None:
         power = np.where(
@@ -100,6 +102,17 @@ def load_of(
         mean_chip=np.where(cuts, mean, 0.0),
         power=power,
         torque=torque,
+    )
+
+
+def drill_shares(sections: Sequence[ProgramSection]) -> Floats:
+    """Return for each section's tool the chip thickness over the feed per tooth where it is a drill, sin(kappa) with kappa half its point
+    angle (its edges cut all round, at one thickness); 0 for other tools."""
+    return np.array(
+        [
+            math.sin(math.radians(0.5 * s.cutter.point_angle)) if s.cutter.form == "drill" else 0.0
+            for s in sections
+        ]
     )
 
 

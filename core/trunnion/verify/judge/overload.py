@@ -20,7 +20,7 @@ from trunnion.model.motion.program import ProgramSection
 from trunnion.model.verdict import Offer
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
-from trunnion.verify.judge.load import NEWTON_METRES
+from trunnion.verify.judge.load import NEWTON_METRES, drill_shares
 from trunnion.verify.judge.locations import block_of
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
@@ -62,6 +62,12 @@ def allowed_load(section: ProgramSection, material: Material | None) -> AllowedL
     """Return the load that a section's cutting data were chosen for, or the material's tables allow its cutter when that is more."""
     tool = section.cutter
     feed = section.feed or float(section.path.feed.max(initial=0.0))
+    share = float(drill_shares((section,))[0])
+    if share > 0.0:
+        # A drill cuts its whole circle at the feed that was chosen for it.
+        turned = 0.0 if section.spindle_stopped else feed / (tool.teeth * section.spindle)
+        rate = 0.25 * math.pi * tool.diameter**2 * feed / MM_PER_METRE
+        return AllowedLoad(rate=rate or math.inf, chip=share * turned or math.inf)
     area, angle = section.width * section.depth, _angle(section.width, tool.diameter)
     per_tooth = 0.0 if section.spindle_stopped else feed / (tool.teeth * section.spindle)
     chip = per_tooth * math.sin(min(angle, math.pi / 2.0))

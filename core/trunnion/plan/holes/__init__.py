@@ -1,0 +1,1 @@
+"""Planning of holes: their geometry in a setup, what drives their operations, and which tools fit."""

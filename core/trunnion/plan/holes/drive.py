@@ -1,0 +1,134 @@
+"""What drives operations on holes: the holes of one operation in its setup's frame, rebuilt from features whenever it is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from trunnion.findings import Finding, Refused, face_tags, warning
+from trunnion.geometry.frame import Frame
+from trunnion.model.feature import Feature, Recognition
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
+from trunnion.plan.holes.hole import Countersink, HoleShape, PlannedHole, hole_in
+from trunnion.progress import Progress
+
+NOT_REACHED = "hole.not-reached"
+"""Code of the finding on a hole that the setup's tool axis does not reach."""
+SPOT, DRILL, BORE, FLOOR, COUNTERBORE, COUNTERSINK = (
+    "spot",
+    "drill",
+    "hole_mill",
+    "hole_floor",
+    "counterbore",
+    "countersink",
+)
+"""Kinds of operations on holes."""
+KINDS = (SPOT, DRILL, BORE, FLOOR, COUNTERBORE, COUNTERSINK)
+OVERLAP = 0.5
+"""mm that a floor's cutter begins above what the drill's point has left."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoleDrive:
+    """The holes that one operation cuts, in the setup's frame.
+
+    `holes` are whole bores, counterbores, or what a drill has left of blind ones, by the operation's `kind`; `sinks` (as many, or none) the
+    cones at their mouths. `faces` are the tags that the operation finishes.
+    """
+
+    kind: str
+    holes: tuple[PlannedHole, ...]
+    sinks: tuple[Countersink, ...] = ()
+    faces: tuple[int, ...] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is no hole to cut."""
+        return not self.holes
+
+
+def holes_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the drive of an operation on holes; those that can't be cut from the setup come out as findings."""
+    drive, findings = hole_drive(operation, scene.recognition, scene.process, scene.setup.frame)
+    return OperationDrive(setup=scene.setup, drive=drive, identity=drive, findings=findings)
+
+
+def hole_drive(
+    operation: Operation, recognition: Recognition, process: ProcessTree, setup: Frame
+) -> tuple[HoleDrive, tuple[Finding, ...]]:
+    """Return the drive of an operation in a setup's frame, and findings on the holes that it does not reach.
+
+    Raises `Refused` where the operation's features are gone, or are no holes of the kind that it cuts.
+    """
+    features = {f.id: f for f in recognition}
+    gone = [id for id in operation.all_features if id not in features]
+    if gone:
+        raise Refused(
+            f"{operation.id}: its feature {gone[0]} is not there any more; delete the operation, or route again"
+        )
+    holes: list[PlannedHole] = []
+    sinks: list[Countersink] = []
+    findings: list[Finding] = []
+    for id in operation.all_features:
+        try:
+            shape = hole_in(features[id], recognition.frame, setup)
+            parts = _parts(operation, shape, process)
+        except Refused as reason:
+            findings.append(not_reached(features[id], str(reason)))
+            continue
+        holes += parts
+        if operation.kind == COUNTERSINK and shape.countersink is not None:
+            sinks.append(shape.countersink)
+    drive = HoleDrive(
+        kind=operation.kind, holes=tuple(holes), sinks=tuple(sinks), faces=operation.faces
+    )
+    return drive, tuple(findings)
+
+
+def not_reached(feature: Feature, reason: str) -> Finding:
+    """Return the finding on a hole that can't be cut from a setup."""
+    return warning(
+        NOT_REACHED,
+        reason,
+        feature.id,
+        *face_tags(feature.tags),
+        remedy="machine it in another setup or by hand; the proof counts what is left",
+    )
+
+
+def _parts(operation: Operation, shape: HoleShape, process: ProcessTree) -> tuple[PlannedHole, ...]:
+    """Return what of a hole an operation cuts."""
+    if operation.kind not in KINDS:
+        raise Refused(
+            f"{operation.id}: no holes are cut by operations of kind {operation.kind}; use one of {', '.join(KINDS)}"
+        )
+    if operation.kind == COUNTERBORE:
+        if not shape.counterbores:
+            raise Refused(f"{shape.bore.feature}: it has no counterbore; correct the feature")
+        return shape.counterbores
+    if operation.kind == COUNTERSINK and shape.countersink is None:
+        raise Refused(f"{shape.bore.feature}: it has no countersink; correct the feature")
+    if operation.kind == FLOOR:
+        drilled = _drilled_by(operation, shape.bore.feature, process)
+        return (below_point(shape.bore, drilled),)
+    return (shape.bore,)
+
+
+def below_point(bore: PlannedHole, point_length: float) -> PlannedHole:
+    """Return what a drill with a point of a length (mm) has left of a blind hole with a flat floor."""
+    return replace(bore, top=min(bore.bottom + point_length + OVERLAP, bore.top))
+
+
+def _drilled_by(operation: Operation, feature: str, process: ProcessTree) -> float:
+    """Return the length of the point that drilled a feature before an operation; infinite where none did."""
+    earlier: Sequence[Operation] = process.of_setup(operation.setup)
+    points = [
+        o.cutter.point_length
+        for o in earlier
+        if o.kind == DRILL and feature in o.all_features and not o.suppressed
+    ]
+    return max(points, default=float("inf"))

@@ -1,0 +1,226 @@
+"""A hole as a setup sees it, read from a feature's sizes: its mouth, the end of its full diameter, and the cone or floor below it.
+
+The sizes are those of `docs/words.md` (hole): `x`, `y`, `top_z` of the mouth in the recognition's frame, `diameter`, `depth` from the mouth
+to the end of the full diameter, `through`, and where it has them `point_angle`, `counterbore_diameter` and `counterbore_depth`,
+`countersink_diameter` and `countersink_angle`; further those of stepped holes (`diameters`, `step_depths`), of conical shoulders
+(`shoulder_angle`), ball-shaped bottoms (`bottom_radius`) and tapers (`taper_angle`). `direction` is the way out of the hole where that is
+not the frame's z.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.frame import Frame
+from trunnion.model.feature import Feature
+from trunnion.model.tool.drill import point_height
+from trunnion.units import trimmed
+
+FLAT = 180.0
+"""Point angle of a flat bottom, degrees."""
+FLAT_WITHIN = 0.05
+"""Degrees: as far as directions are held to be parallel (`tolerance.ANGLE`)."""
+NEEDED = ("x", "y", "top_z", "diameter", "depth")
+"""Sizes without which nothing is known of a hole."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedHole:
+    """A round recess along z of a setup: a whole hole's bore, or its counterbore.
+
+    `x`, `y` of the axis, `top` where it begins, `bottom` where its full diameter ends, all mm in the setup's frame; below a blind one comes
+    a cone of `point_angle` (degrees over both sides, 180: a flat floor). `core` is the diameter that is free around the axis when a wider
+    part is cut, 0 where nothing is. `faces` are the tags that finishing it makes.
+    """
+
+    feature: str
+    x: float
+    y: float
+    top: float
+    bottom: float
+    diameter: float
+    through: bool
+    point_angle: float = FLAT
+    core: float = 0.0
+    faces: tuple[int, ...] = ()
+
+    @property
+    def radius(self) -> float:
+        """Half the diameter."""
+        return 0.5 * self.diameter
+
+    @property
+    def depth(self) -> float:
+        """From where it begins to where its full diameter ends, mm."""
+        return self.top - self.bottom
+
+    @property
+    def position(self) -> Floats:
+        """Where its axis is in plan (2,)."""
+        return np.array([self.x, self.y])
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether it is blind and ends in a flat floor."""
+        return not self.through and self.point_angle >= FLAT - FLAT_WITHIN
+
+    @property
+    def point_length(self) -> float:
+        """How far it goes on below its full diameter: the height of its cone; without end where it goes through."""
+        if self.through:
+            return math.inf
+        return 0.0 if self.is_flat else point_height(self.diameter, self.point_angle)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Countersink:
+    """The cone at a hole's mouth: its largest `diameter` mm at the mouth, and its `angle` in degrees over both sides."""
+
+    diameter: float
+    angle: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoleShape:
+    """A hole's parts: the bore, and where it has them its counterbores, the narrowest and deepest first, and the countersink."""
+
+    bore: PlannedHole
+    counterbores: tuple[PlannedHole, ...] = ()
+    countersink: Countersink | None = None
+
+
+def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
+    """Return a hole in a setup's frame; `frame` is the recognition's.
+
+    Raises `Refused` where sizes are missing, or where the tool's axis does not run along the hole's. A plain hole that goes through is
+    reached from both of its ends.
+    """
+    missing = [name for name in NEEDED if not isinstance(_word(feature, name), (int, float))]
+    if missing:
+        raise Refused(f"{feature.id}: nothing says its {', '.join(missing)}; correct the feature")
+    x, y, top, diameter, depth = (_number(feature, name) for name in NEEDED)
+    if diameter <= 0.0 or depth <= 0.0:
+        raise Refused(f"{feature.id}: a hole's diameter and depth are above 0; correct the feature")
+    if _number(feature, "taper_angle") > 0.0:
+        raise Refused(
+            f"{feature.id}: its side is tapered, which neither a drill nor an end mill makes"
+        )
+    out = _direction(feature)
+    mouth = np.array([x, y, top])
+    ends = setup.to_local(frame.to_world(np.stack([mouth, mouth - depth * out])))
+    up = float(setup.local_direction(frame.world_direction(out))[2])
+    through, stepped = bool(_word(feature, "through")), _is_stepped(feature)
+    if 1.0 - abs(up) > 1.0 - math.cos(tolerance.ANGLE):
+        lean = math.degrees(math.acos(min(abs(up), 1.0)))
+        raise Refused(
+            f"{feature.id}: its axis leans by {trimmed(lean, 2)} degrees from the tool's; it needs a setup or a tool that comes along it"
+        )
+    if up < 0.0:
+        if stepped or not through:
+            raise Refused(f"{feature.id}: it opens away from the tool; it needs a setup from there")
+        ends = ends[::-1]
+    (x, y, top), bottom = ends[0].tolist(), float(ends[1, 2])
+    bore = PlannedHole(
+        feature=feature.id,
+        x=x,
+        y=y,
+        top=top,
+        bottom=bottom,
+        diameter=diameter,
+        through=through,
+        point_angle=_point_angle(feature, 0.5 * diameter),
+        faces=feature.with_role("side", "bottom"),
+    )
+    return HoleShape(
+        bore=bore, counterbores=_counterbores(feature, bore), countersink=_countersink(feature)
+    )
+
+
+def _counterbores(feature: Feature, bore: PlannedHole) -> tuple[PlannedHole, ...]:
+    return tuple(
+        PlannedHole(
+            feature=feature.id,
+            x=bore.x,
+            y=bore.y,
+            top=bore.top,
+            bottom=bore.top - depth,
+            diameter=diameter,
+            through=False,
+            point_angle=_number(feature, "shoulder_angle", FLAT),
+            core=bore.diameter,
+            faces=feature.with_role("counterbore_side", "counterbore_floor"),
+        )
+        for diameter, depth in _steps(feature, bore)
+    )
+
+
+def _steps(feature: Feature, bore: PlannedHole) -> list[tuple[float, float]]:
+    """Return diameter and depth of the wider parts at a hole's mouth, from the bore outwards.
+
+    Of three diameters and more, `diameters` with `step_depths` tell them from the mouth down; else the counterbore's own sizes.
+    """
+    diameters, depths = _word(feature, "diameters"), _word(feature, "step_depths")
+    if isinstance(diameters, tuple) and isinstance(depths, tuple):
+        steps = list(zip(map(float, diameters), map(float, depths), strict=False))
+    else:
+        steps = [(_number(feature, "counterbore_diameter"), _number(feature, "counterbore_depth"))]
+    found: list[tuple[float, float]] = []
+    for diameter, depth in steps:
+        if diameter <= bore.diameter + tolerance.SLIVER or depth <= 0.0:
+            break
+        found.append((diameter, depth))
+    return found[::-1]
+
+
+def _countersink(feature: Feature) -> Countersink | None:
+    diameter = _number(feature, "countersink_diameter", 0.0)
+    angle = _number(feature, "countersink_angle", 0.0)
+    return Countersink(diameter=diameter, angle=angle) if diameter > 0.0 and angle > 0.0 else None
+
+
+def _point_angle(feature: Feature, radius: float) -> float:
+    """Return the angle of the cone below a hole's full diameter; in a ball's cap that of the cone that fits into it."""
+    ball = _number(feature, "bottom_radius")
+    if ball < radius - tolerance.SLIVER:
+        return _number(feature, "point_angle", FLAT)
+    height = ball - math.sqrt(max(ball**2 - radius**2, 0.0))
+    return math.degrees(2.0 * math.atan2(radius, height))
+
+
+def is_wider_behind(feature: Feature) -> bool:
+    """Return whether a hole has a counterbore or a countersink at its far end."""
+    return any(
+        _number(feature, f"back_{part}_diameter", 0.0) > 0.0
+        for part in ("counterbore", "countersink")
+    )
+
+
+def _is_stepped(feature: Feature) -> bool:
+    """Return whether a hole has a wider part at its mouth."""
+    return any(
+        _number(feature, f"{part}_diameter", 0.0) > 0.0 for part in ("counterbore", "countersink")
+    )
+
+
+def _direction(feature: Feature) -> Floats:
+    """Return the way out of a hole, a unit vector in the recognition's frame."""
+    given = _word(feature, "direction")
+    if not isinstance(given, tuple) or len(given) != 3:
+        return np.array([0.0, 0.0, 1.0])
+    out = np.array(given, dtype=np.float64)
+    return np.asarray(out / np.linalg.norm(out))
+
+
+def _word(feature: Feature, name: str) -> object:
+    return feature.sizes.get(name, feature.attributes.get(name))
+
+
+def _number(feature: Feature, name: str, default: float = 0.0) -> float:
+    value = _word(feature, name)
+    return float(value) if isinstance(value, (int, float)) else default

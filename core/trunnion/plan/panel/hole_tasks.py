@@ -1,0 +1,353 @@
+"""The operations that stages on holes request: one for all equal holes that one tool serves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from trunnion.findings import Finding, Refused, error, face_tags, warning
+from trunnion.geometry.plane.region import EMPTY_REGION
+from trunnion.model.feature import Feature
+from trunnion.model.tool import Tool
+from trunnion.plan.holes.drive import not_reached
+from trunnion.plan.holes.hole import HoleShape, PlannedHole, hole_in, is_wider_behind
+from trunnion.plan.holes.settings import DrillSettings, HoleSettings
+from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for, sinks_for
+from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
+from trunnion.plan.tool_choice import Candidates, ToolRequirement
+from trunnion.settings import choose
+from trunnion.shop import Stage
+from trunnion.units import trimmed
+
+SAME_SIZE = 3
+"""Decimals of mm by which sizes of holes are held against each other: CAD files carry more than is meant."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoleFit:
+    """A hole, or the part of one that a stage cuts, with its feature and the tools that fit it; `faces` that are finished, None: all of the
+    hole's own."""
+
+    feature: Feature
+    hole: PlannedHole
+    found: Candidates
+    faces: tuple[int, ...] | None = None
+
+
+@dataclass(slots=True, kw_only=True)
+class HolePlanning:
+    """What is known of a setup's holes while it is planned: their shapes, the drills for each, and what stands around them."""
+
+    shapes: dict[str, HoleShape]
+    around: HoleSpace
+    settings: HoleSettings
+    drilling: DrillSettings
+    drills: dict[str, Candidates]
+    mills: dict[str, Candidates]
+
+
+def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) -> HolePlanning:
+    """Return what is known of the holes of a stage; a hole that the setup does not reach is told of once and left out."""
+    if state.holes is None:
+        state.holes = HolePlanning(
+            shapes={},
+            around=HoleSpace(space=state.space, clearance=state.settings.reach_clearance),
+            settings=choose(HoleSettings, state.choices),
+            drilling=choose(DrillSettings, state.choices),
+            drills={},
+            mills={},
+        )
+    known: HolePlanning = state.holes
+    for feature in state.progress.each(features):
+        if feature.kind not in stage.on or feature.id in known.drills:
+            continue
+        known.drills[feature.id] = Candidates(tools=())
+        try:
+            shape = hole_in(feature, state.space.recognition.frame, state.space.setup.frame)
+            if not known.around.is_open((shape.bore, *shape.counterbores)[-1]):
+                raise Refused(
+                    f"{feature.id}: the part covers its mouth; it needs a setup that sees it open"
+                )
+        except Refused as reason:
+            state.findings.append(not_reached(feature, str(reason)))
+            continue
+        known.shapes[feature.id] = shape
+        if is_wider_behind(feature):
+            state.findings.append(
+                not_reached(
+                    feature,
+                    f"{feature.id}: the wider part at its far end opens away from the tool",
+                )
+            )
+        known.drills[feature.id] = drills_for(
+            shape.bore,
+            state.shop.tools_for(state.material.iso_group, "drill"),
+            known.around,
+            known.settings.diameter_tolerance,
+            known.drilling.breakthrough,
+        )
+        if not known.drills[feature.id].tools:
+            known.mills[feature.id] = _mills(state, known, shape.bore, shape.bore.top)
+    return known
+
+
+def _mills(state: PanelPlanState, known: HolePlanning, hole: PlannedHole, top: float) -> Candidates:
+    tools = state.shop.tools_for(state.material.iso_group, "finish")
+    return mills_for(hole, tools, known.around, top, known.drilling.breakthrough)
+
+
+def _of_stage(
+    known: HolePlanning, stage: Stage, features: Sequence[Feature]
+) -> list[tuple[Feature, HoleShape]]:
+    return [
+        (f, known.shapes[f.id]) for f in features if f.kind in stage.on and f.id in known.shapes
+    ]
+
+
+def _spot_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    known = _planning(state, stage, features)
+    if not known.settings.spot:
+        return []
+    tools = sorted(
+        state.shop.tools_for(state.material.iso_group, "spot"), key=lambda t: (-t.diameter, t.name)
+    )
+    found = Candidates(
+        tools=tuple(tools),
+        reason="the catalogue has no spotting drill for this material",
+        remedy="add one to the tools folder",
+    )
+    fitted = [
+        HoleFit(feature=f, hole=shape.bore, found=found)
+        for f, shape in _of_stage(known, stage, features)
+        if known.drills[f.id].tools
+    ]
+    # One spotting drill serves holes of all sizes: its cone says how wide.
+    return _tasks(state, stage, fitted, lambda hole: ("spot",), _no_faces)
+
+
+def _drill_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    known = _planning(state, stage, features)
+    # A hole without a drill is milled where an end mill gets into it; where none does, both reasons are told.
+    fitted = [
+        HoleFit(
+            feature=f, hole=shape.bore, found=_either(known.drills[f.id], known.mills.get(f.id))
+        )
+        for f, shape in _of_stage(known, stage, features)
+        if known.drills[f.id].tools or not known.mills[f.id].tools
+    ]
+    return _tasks(
+        state, stage, fitted, lambda hole: (*_size(hole), _deep_class(hole, known.drilling)), _own
+    )
+
+
+def _either(drills: Candidates, mills: Candidates | None) -> Candidates:
+    """Return the drills of a hole, or why neither a drill nor an end mill fits it."""
+    if drills.tools or mills is None:
+        return drills
+    return Candidates(
+        tools=(),
+        reason=f"{drills.reason}; {mills.reason}",
+        remedy=f"{drills.remedy}, or {mills.remedy}",
+    )
+
+
+def _mill_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    known = _planning(state, stage, features)
+    fitted = [
+        HoleFit(feature=f, hole=shape.bore, found=known.mills[f.id])
+        for f, shape in _of_stage(known, stage, features)
+        if f.id in known.mills and known.mills[f.id].tools
+    ]
+    return _tasks(state, stage, fitted, _size, _own)
+
+
+def _floor_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    """Ask for the flat floors of holes that drills have left their point in."""
+    known = _planning(state, stage, features)
+    fitted = [
+        HoleFit(
+            feature=f,
+            hole=shape.bore,
+            found=_mills(state, known, shape.bore, shape.bore.top),
+            faces=f.with_role("bottom"),
+        )
+        for f, shape in _of_stage(known, stage, features)
+        if shape.bore.is_flat and known.drills[f.id].tools
+    ]
+    return _tasks(state, stage, fitted, _size, _own, no_floor_tool)
+
+
+def _counterbore_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    known = _planning(state, stage, features)
+    fitted = [
+        HoleFit(
+            feature=f,
+            hole=shape.counterbores[0],
+            found=_mills(state, known, shape.counterbores[0], shape.bore.top),
+            faces=shape.counterbores[0].faces,
+        )
+        for f, shape in _of_stage(known, stage, features)
+        if shape.counterbores
+    ]
+    # What gets down to the deepest step of a hole mills the others too.
+    return _tasks(state, stage, fitted, _size, _own)
+
+
+def _countersink_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    known = _planning(state, stage, features)
+    tools = state.shop.tools_for(state.material.iso_group, "countersink")
+    fitted = [
+        HoleFit(
+            feature=f,
+            hole=replace(shape.bore, diameter=shape.countersink.diameter),
+            found=sinks_for(shape.bore, shape.countersink, tools, known.around),
+            faces=f.with_role("countersink"),
+        )
+        for f, shape in _of_stage(known, stage, features)
+        if shape.countersink is not None
+    ]
+    # Cones of one angle are cut by one tool, however wide: it goes as deep as each asks for.
+    angles = {f.feature.id: _sink_angle(known, f.feature.id) for f in fitted}
+    groups = [
+        [f for f in fitted if angles[f.feature.id] == a] for a in dict.fromkeys(angles.values())
+    ]
+    return [
+        # The narrowest that serves them all: a larger one would turn slower, and needs more space.
+        replace(task, found=replace(task.found, tools=task.found.tools[:1]))
+        for group in groups
+        for task in _tasks(state, stage, group, lambda hole: ("sink",), _own)
+        if task.found is not None
+    ]
+
+
+def _sink_angle(known: HolePlanning, id: str) -> float:
+    sink = known.shapes[id].countersink
+    return 0.0 if sink is None else round(sink.angle, 1)
+
+
+def _size(hole: PlannedHole) -> tuple[object, ...]:
+    return (round(hole.diameter, SAME_SIZE), hole.through, round(hole.point_angle, SAME_SIZE))
+
+
+def _deep_class(hole: PlannedHole, settings: DrillSettings) -> int:
+    """Return which of the ways of drilling a hole's depth asks for: at once, with chips broken, with chips brought out."""
+    times = hole.depth / hole.diameter
+    return int(times >= settings.chip_break_from) + int(times >= settings.peck_from)
+
+
+def _own(fitted: HoleFit) -> tuple[int, ...]:
+    return fitted.hole.faces if fitted.faces is None else fitted.faces
+
+
+def _no_faces(fitted: HoleFit) -> tuple[int, ...]:
+    return ()
+
+
+def _tasks(
+    state: PanelPlanState,
+    stage: Stage,
+    fitted: Iterable[HoleFit],
+    size_of: Callable[[PlannedHole], tuple[object, ...]],
+    faces_of: Callable[[HoleFit], tuple[int, ...]],
+    report: Callable[[Stage, Sequence[HoleFit], str, str], Finding] | None = None,
+) -> list[OperationTask]:
+    """Return a task for all holes of one size that one tool serves; holes that no tool fits become findings, one for each reason."""
+    groups: dict[tuple[object, ...], list[HoleFit]] = {}
+    missing: dict[tuple[str, str], list[HoleFit]] = {}
+    for one in fitted:
+        if one.found.tools:
+            groups.setdefault(size_of(one.hole), []).append(one)
+        else:
+            missing.setdefault((one.found.reason, one.found.remedy), []).append(one)
+    state.findings += [
+        (report or no_tool)(stage, holes, reason, remedy)
+        for (reason, remedy), holes in missing.items()
+    ]
+    return [
+        _task(stage, holes, tools, faces_of)
+        for group in groups.values()
+        for holes, tools in _served(group)
+    ]
+
+
+def _served(group: Sequence[HoleFit]) -> list[tuple[list[HoleFit], tuple[Tool, ...]]]:
+    """Return equal holes with the tools that serve them: all together where one does, else those together that the same tools fit."""
+    first = group[0].found.tools
+    common = tuple(t for t in first if all(t in one.found.tools for one in group))
+    if common:
+        return [(list(group), common)]
+    parts: dict[tuple[str, ...], list[HoleFit]] = {}
+    for one in group:
+        parts.setdefault(tuple(t.name for t in one.found.tools), []).append(one)
+    return [(holes, holes[0].found.tools) for holes in parts.values()]
+
+
+def _task(
+    stage: Stage,
+    holes: Sequence[HoleFit],
+    tools: tuple[Tool, ...],
+    faces_of: Callable[[HoleFit], tuple[int, ...]],
+) -> OperationTask:
+    first, hole = holes[0], holes[0].hole
+    deepest = max(h.hole.depth for h in holes)
+    requirement = ToolRequirement(
+        depth=deepest, envelope_area=EMPTY_REGION, wanted=EMPTY_REGION, corner_radius=0.0
+    )
+    number = f"{len(holes)} holes" if len(holes) > 1 else "one hole"
+    return OperationTask(
+        id=f"{stage.kind}-{first.feature.id}",
+        stage=stage,
+        feature=first.feature.id,
+        others=tuple(h.feature.id for h in holes[1:]),
+        position=(hole.x, hole.y),
+        requirement=requirement,
+        faces=tuple(tag for h in holes for tag in faces_of(h)),
+        height=deepest,
+        width=hole.diameter,
+        found=Candidates(tools=tools),
+        why=f"{number} of D {trimmed(hole.diameter, 3)}, up to {trimmed(deepest, 2)} mm deep: it reaches their bottoms, and "
+        "shank and holder keep clear of what stands around them.",
+    )
+
+
+def no_tool(stage: Stage, holes: Sequence[HoleFit], reason: str, remedy: str) -> Finding:
+    """Return the error that no tool of the catalogue fits some holes."""
+    names = ", ".join(h.feature.id for h in holes)
+    return error(
+        "route.no-cutter",
+        f"{names}: {reason} ({stage.name})",
+        *(h.feature.id for h in holes),
+        *face_tags(tag for h in holes for tag in h.hole.faces),
+        remedy=remedy,
+    )
+
+
+def no_floor_tool(stage: Stage, holes: Sequence[HoleFit], reason: str, remedy: str) -> Finding:
+    """Return the warning that drills' points stay in flat holes: no end mill fits these."""
+    found = no_tool(stage, holes, reason, remedy)
+    return warning(found.code, found.text, *found.where, remedy=found.remedy)
+
+
+HOLE_TASK_MAKERS: Mapping[
+    str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]
+] = {
+    "spot": _spot_tasks,
+    "drill": _drill_tasks,
+    "hole_mill": _mill_tasks,
+    "hole_floor": _floor_tasks,
+    "counterbore": _counterbore_tasks,
+    "countersink": _countersink_tasks,
+}
+"""The rule behind each word that a typical plan gives for the tool of a stage on holes."""

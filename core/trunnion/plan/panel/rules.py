@@ -1,0 +1,9 @@
+"""Every rule that a panel's typical plan may name for a stage's cutter."""
+
+from __future__ import annotations
+
+from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
+from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS
+
+TASK_MAKERS = {**PLANE_TASK_MAKERS, **HOLE_TASK_MAKERS}
+"""The rule behind each word that a typical plan gives for its cutter."""

@@ -1,0 +1,1 @@
+"""Strategies for holes: drilling, helical milling, countersinking."""

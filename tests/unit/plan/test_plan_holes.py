@@ -1,0 +1,402 @@
+"""Holes in a setup, the drills that fit them, and the operations that are planned for them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lxml import etree
+from pytest import approx
+
+from flat_parts import FlatPart, Prism, blank_of
+from holed import HIGH, feature, hole
+from programs import part_info
+from trunnion.findings import Refused
+from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.plane.region import Region
+from trunnion.model.feature import FaceRole, Feature, Recognition
+from trunnion.plan.holes.drive import hole_drive
+from trunnion.plan.holes.hole import hole_in
+from trunnion.plan.holes.tools import HoleSpace, drills_for, tip_of
+from trunnion.plan.panel.route import RouteSettings, make_route
+from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.plan.repair.contract import RepairJob
+from trunnion.plan.repair.tool_change import next_tool
+from trunnion.plan.setups import SetupSettings, make_setups
+from trunnion.progress import NO_PROGRESS
+from trunnion.settings import choose
+from trunnion.shop import load_shop
+from trunnion.store.process import process_xml
+
+SHOP = load_shop()
+DRILLS = SHOP.tools_for("N", "drill")
+D8 = next(t for t in DRILLS if t.name == "DR-K D8")
+TURNED = Frame(np.array([100.0, 60.0, HIGH]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0]))
+SIDEWAYS = Frame(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+
+
+def shape(sizes, setup=WORLD, **attributes):
+    made = replace(feature(1, sizes), attributes=attributes)
+    return hole_in(made, WORLD, setup)
+
+
+def test_a_hole_lies_in_the_setup_as_its_sizes_say():
+    bore = shape(hole(30, 20, 8, 12.0, point_angle=118.0)).bore
+    assert (bore.x, bore.y, bore.top, bore.bottom) == approx((30, 20, 20, 8))
+    assert bore.point_length == approx(4.0 / math.tan(math.radians(59.0)))
+
+
+def test_a_through_hole_is_reached_from_both_of_its_ends():
+    bore = shape(hole(30, 20, 8), TURNED).bore
+    assert (bore.top, bore.bottom) == approx((HIGH, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("sizes", "setup", "words"),
+    [
+        (hole(30, 20, 8, 12.0), TURNED, "opens away from the tool"),
+        (hole(30, 20, 8, counterbore_diameter=14, counterbore_depth=4), TURNED, "opens away"),
+        (hole(30, 20, 8), SIDEWAYS, "leans by 90 degrees"),
+        (hole(30, 20, 0.0), WORLD, "above 0"),
+    ],
+)
+def test_what_a_setup_does_not_reach_is_refused_with_why(sizes, setup, words):
+    with pytest.raises(Refused, match=words):
+        shape(sizes, setup)
+
+
+def test_a_hole_without_sizes_is_refused():
+    bare = Feature(id="hole-01", kind="hole", faces=(), sizes={"x": 1.0, "y": 2.0})
+    with pytest.raises(Refused, match="nothing says its top_z, diameter, depth"):
+        hole_in(bare, WORLD, WORLD)
+
+
+def test_a_hole_with_a_direction_is_reached_from_there():
+    bore = shape({**hole(30, 20, 8, 12.0), "top_z": 0.0}, TURNED, direction=(0.0, 0.0, -1.0)).bore
+    assert (bore.top, bore.bottom) == approx((HIGH, HIGH - 12.0))
+
+
+def test_a_through_hole_is_drilled_past_its_end_by_point_and_breakthrough():
+    assert tip_of(shape(hole(0, 0, 8)).bore, D8, 1.0) == approx(-1.0 - D8.point_length)
+
+
+@pytest.mark.parametrize(
+    ("angle", "deeper"),
+    [(140.0, D8.point_length), (118.0, D8.point_length), (160.0, 4 / math.tan(math.radians(80)))],
+    ids=["its own", "a sharper cone", "a blunter cone"],
+)
+def test_a_drills_tip_goes_no_deeper_than_the_holes_own_cone(angle, deeper):
+    assert tip_of(shape(hole(0, 0, 8, 12.0, point_angle=angle)).bore, D8, 1.0) == approx(8 - deeper)
+
+
+def test_a_flat_floor_is_drilled_down_to_with_the_tip():
+    assert tip_of(shape(hole(0, 0, 8, 12.0)).bore, D8, 1.0) == approx(8.0)
+
+
+def walled(*holes, wall: float = 0.0, at: float = 40.0):
+    """Return a plate 100 x 60 x 20 with holes, its ground beside a wall from x = `at` on lower by `wall` mm, and its recognition."""
+    cuts = [
+        Prism(
+            area=Region.circle((h["x"], h["y"]), h["diameter"] / 2),
+            low=h["top_z"] - h["depth"] - (1.0 if h["through"] else 0.0),
+            high=HIGH + 1.0,
+            face=2 * n + 2,
+            side=2 * n + 3,
+            at=(h["x"], h["y"]),
+        )
+        for n, h in enumerate(holes)
+    ]
+    if wall:
+        n = 2 * len(holes) + 2
+        ground = Region.rectangle(-10, -10, at, 70)
+        cuts.append(
+            Prism(area=ground, low=HIGH - wall, high=HIGH + 1, face=n, side=n + 1, at=(5, 5))
+        )
+    part = FlatPart(outline=Region.rectangle(0, 0, 100, 60), height=HIGH, cuts=tuple(cuts))
+    features = tuple(
+        Feature(
+            id=f"hole-{n + 1:02}",
+            kind="hole",
+            faces=(FaceRole(role="side", face=2 * n + 3),),
+            sizes=h,
+        )
+        for n, h in enumerate(holes)
+    )
+    return part, Recognition(family="panel", frame=WORLD, features=features)
+
+
+def around(made, clearance=1.0):
+    part, recognition = made
+    blank = blank_of(part)
+    setup = make_setups(recognition, blank, choose(SetupSettings, {}))[0]
+    space = SetupSpace.of(part, recognition, blank, setup)
+    first = hole_in(recognition.features[0], WORLD, setup.frame).bore
+    return HoleSpace(space=space, clearance=clearance), first
+
+
+def chosen(made, **changed):
+    surroundings, first = around(made)
+    words = {"diameter_tolerance": 0.02, "breakthrough": 1.0, **changed}
+    return drills_for(first, DRILLS, surroundings, **words)
+
+
+def test_the_shortest_drill_of_the_diameter_comes_first():
+    names = [t.name for t in chosen(walled(hole(30, 30, 8, 12.0, point_angle=140.0))).tools]
+    assert names == ["DR-K D8", "DR-L D8"]
+
+
+def test_a_hole_deeper_than_short_flutes_gets_a_longer_drill():
+    assert chosen(walled(hole(30, 30, 3))).tools[0].name == "DR-L D3"
+
+
+def test_a_hole_at_the_foot_of_a_wall_gets_a_drill_whose_shank_passes_it():
+    """A drill of D 3 has a shank of 6: beside a wall 2 mm away it must stay over the wall's top."""
+    low = hole(37, 30, 3, 5.0, top_z=HIGH - 8.0, point_angle=140.0)
+    assert chosen(walled(low)).tools[0].name == "DR-K D3"
+    assert chosen(walled(low, wall=8.0)).tools[0].name == "DR-K D3"
+    deeper = hole(38, 30, 3, 2.0, top_z=HIGH - 17.0, point_angle=140.0)
+    assert chosen(walled(deeper, wall=17.0)).tools[0].name == "DR-L D3"
+
+
+@pytest.mark.parametrize(
+    ("sizes", "words"),
+    [
+        (hole(30, 30, 7.77), "no drill of D 7.77"),
+        (hole(30, 30, 3, 18.0, top_z=HIGH), None),
+        ({**hole(30, 30, 3, 60.0), "through": True}, "flutes of"),
+        (hole(38, 30, 3, 2.0, top_z=HIGH - 17.5, point_angle=140.0), None),
+    ],
+)
+def test_what_is_missing_is_said(sizes, words):
+    found = chosen(walled(sizes))
+    assert bool(found.tools) == (words is None)
+    assert words is None or (words in found.reason and found.remedy)
+
+
+def test_shank_or_holder_at_a_high_wall_is_named():
+    low = hole(36, 30, 3, 3.0, top_z=2.0, point_angle=140.0)
+    part, recognition = walled(low, wall=18.0)
+    tall = replace(
+        part, height=60.0, cuts=(*part.cuts[:1], replace(part.cuts[1], low=2.0, high=61))
+    )
+    found = chosen((tall, recognition))
+    assert not found.tools and "too near" in found.reason
+
+
+def test_a_covered_mouth_is_seen():
+    surroundings, first = around(walled(hole(30, 30, 8, 12.0)))
+    assert surroundings.is_open(first)
+    assert not surroundings.is_open(replace(first, x=first.x + 20.0, top=first.top - 5.0))
+
+
+def route(made, **choices):
+    part, recognition = made
+    blank = blank_of(part)
+    setups = make_setups(recognition, blank, choose(SetupSettings, {}))
+    return make_route(
+        recognition,
+        (),
+        blank,
+        setups,
+        SHOP,
+        part,
+        choose(RouteSettings, {}),
+        NO_PROGRESS,
+        choices=choices,
+    )
+
+
+EQUAL = (hole(20, 20, 8), hole(80, 20, 8), hole(50, 40, 6, 8.0, point_angle=140.0), hole(20, 40, 8))
+
+
+def test_equal_holes_are_one_operation():
+    made = {o.id: o for o in route(walled(*EQUAL)).operations if o.kind == "drill"}
+    assert [o.all_features for o in made.values()] == [
+        ("hole-03",),
+        ("hole-01", "hole-02", "hole-04"),
+    ]
+    assert made["drill-hole-01"].faces == (3, 5, 9)
+    assert {o.tool.name for o in made.values()} == {"DR-S D8", "DR-K D6"}
+
+
+def test_holes_deep_enough_to_be_drilled_otherwise_are_another_operation():
+    made = route(
+        walled(hole(20, 20, 4, 8.0, point_angle=140.0), hole(80, 20, 4, 14.0, point_angle=140.0))
+    )
+    assert len([o for o in made.operations if o.kind == "drill"]) == 2
+
+
+def test_holes_are_drilled_after_the_face():
+    process = route(walled(*EQUAL))
+    kinds = [o.kind for o in process.operations]
+    assert kinds.index("face") < kinds.index("drill")
+
+
+def test_a_hole_without_a_tool_is_an_error_that_says_what_is_missing():
+    process = route(walled(hole(20, 20, 1.234)))
+    found = [f for f in process.findings if f.code == "route.no-cutter"]
+    assert found and "hole-01" in found[0].text and "1.234" in found[0].text
+
+
+def test_a_hole_that_is_not_reached_is_a_finding():
+    part, recognition = walled(hole(20, 20, 8, 12.0))
+    aside = replace(recognition.features[0], attributes={"direction": (1.0, 0.0, 0.0)})
+    process = route((part, replace(recognition, features=(aside,))))
+    assert not [o for o in process.operations if o.kind == "drill"]
+    assert "leans by 90" in next(f.text for f in process.findings if f.code == "hole.not-reached")
+
+
+def test_holes_are_spotted_when_that_is_asked_for():
+    process = route(walled(*EQUAL), **{"holes.spot": True})
+    spots = [o for o in process.operations if o.kind == "spot"]
+    assert len(spots) == 1 and len(spots[0].all_features) == 4 and not spots[0].faces
+    assert all(spots[0].id in o.after for o in process.operations if o.kind == "drill")
+    assert not [o for o in route(walled(*EQUAL)).operations if o.kind == "spot"]
+
+
+def test_a_drive_is_made_of_features_again_and_tells_of_those_that_are_gone():
+    made = walled(*EQUAL)
+    process = route(made)
+    operation = process.operation("drill-hole-01")
+    setup = process.setups[0].frame
+    drive, findings = hole_drive(operation, made[1], process, setup)
+    assert [h.feature for h in drive.holes] == list(operation.all_features) and not findings
+    gone = replace(made[1], features=made[1].features[:-1])
+    with pytest.raises(Refused, match="hole-04 is not there any more"):
+        hole_drive(operation, gone, process, setup)
+
+
+def test_drilling_data_come_from_the_table_and_know_their_power():
+    operation = next(o for o in route(walled(hole(20, 20, 8))).operations if o.kind == "drill")
+    data = operation.data
+    table = SHOP.drilling["N"]
+    assert data.speed == approx(table.speed) and data.width == 8.0 and data.depth == 4.0
+    turn = data.feed / data.spindle
+    # Kienzle with h = fz sin(kappa), as the makers' tables have it: Pc = f vc D kc / 240000.
+    chip = turn / 2 * math.sin(math.radians(0.5 * operation.tool.point_angle))
+    specific = SHOP.material("EN AW-7075").force * chip**-0.25
+    assert data.power == approx(turn * data.speed * 8.0 * specific / 240_000, rel=1e-6)
+    assert any("drilling table" in rule for rule in data.rules)
+    assert any("thrust" in rule for rule in data.rules)
+
+
+def test_a_diameter_without_a_drill_is_milled():
+    process = route(walled(hole(30, 30, 7.7), hole(70, 30, 25.0)))
+    made = {o.feature: o for o in process.operations if o.kind == "hole_mill"}
+    assert set(made) == {"hole-01", "hole-02"} and not process.findings
+    assert all(o.strategy == "hole.mill" and o.tool.form == "flat" for o in made.values())
+    assert made["hole-01"].tool.diameter <= 0.8 * 7.7
+
+
+def test_a_drill_that_is_too_short_gives_way_to_an_end_mill_and_both_reasons_are_told():
+    deep = {**hole(30, 30, 3, 60.0), "through": True}
+    process = route(walled(deep))
+    text = next(f.text for f in process.findings if f.code == "route.no-cutter")
+    assert "flutes" in text and "end mill" in text
+
+
+def test_a_flat_floor_is_milled_after_its_drill():
+    process = route(walled(hole(30, 30, 8, 10.0), hole(70, 30, 8, 10.0), hole(50, 30, 8)))
+    (floor,) = (o for o in process.operations if o.kind == "hole_floor")
+    assert floor.all_features == ("hole-01", "hole-02")
+    assert "drill-hole-01" in floor.after
+    drive, _ = hole_drive(
+        floor,
+        walled(hole(30, 30, 8, 10.0), hole(70, 30, 8, 10.0))[1],
+        process,
+        process.setups[0].frame,
+    )
+    drill = process.operation("drill-hole-01").tool
+    # From half a millimetre over what the point has left.
+    assert drive.holes[0].depth == approx(drill.point_length + 0.5)
+
+
+def test_a_counterbore_is_milled_after_its_pilot():
+    sunk = {"counterbore_diameter": 15.0, "counterbore_depth": 6.0}
+    process = route(walled(hole(30, 30, 9, **sunk), hole(70, 30, 9, **sunk), hole(50, 30, 9)))
+    (wide,) = (o for o in process.operations if o.kind == "counterbore")
+    assert wide.all_features == ("hole-01", "hole-02")
+    order = [o.id for o in process.operations]
+    pilot = next(o for o in process.operations if o.kind == "drill" and "hole-01" in o.all_features)
+    assert pilot.id in wide.after and order.index(pilot.id) < order.index(wide.id)
+    shapes = hole_in(walled(hole(30, 30, 9, **sunk))[1].features[0], WORLD, WORLD)
+    assert (shapes.counterbores[0].bottom, shapes.counterbores[0].core) == (HIGH - 6.0, 9.0)
+
+
+def test_a_blind_hole_gets_a_drill_with_its_own_point():
+    """Though another one is in use: the cone at its bottom is part of the drawing."""
+    named = [t.name for t in chosen(walled(hole(30, 30, 9, 12.0, point_angle=118.0))).tools]
+    assert named == ["DR-S D9", "DR-J D9"]
+
+
+def test_a_deep_through_hole_gets_a_jobber_drill():
+    deep = {**hole(30, 30, 6, 45.0, top_z=HIGH), "through": True}
+    assert [t.name for t in chosen(walled(deep)).tools] == ["DR-J D6"]
+
+
+def test_countersinks_of_one_angle_are_one_operation_by_the_narrowest_tool():
+    def sunk(x, wide, angle):
+        return hole(x, 30, 6, countersink_diameter=wide, countersink_angle=angle)
+
+    process = route(walled(sunk(20, 12.0, 90.0), sunk(50, 10.0, 90.0), sunk(80, 9.5, 100.0)))
+    made = {o.tool.name: o for o in process.operations if o.kind == "countersink"}
+    assert set(made) == {"CS90 D12.4", "CS100 D10.4"}
+    assert made["CS90 D12.4"].all_features == ("hole-01", "hole-02")
+    assert made["CS90 D12.4"].data.speed == approx(0.5 * SHOP.drilling["N"].speed)
+    assert any(i.startswith("drill") for i in made["CS90 D12.4"].after)
+
+
+def test_a_countersink_without_a_tool_is_named():
+    process = route(walled(hole(20, 30, 6, countersink_diameter=12, countersink_angle=82)))
+    text = next(f.text for f in process.findings if f.code == "route.no-cutter")
+    assert "no countersink of 82 degrees" in text
+
+
+def test_every_step_of_a_stepped_hole_is_a_counterbore():
+    sizes = hole(30, 30, 9, diameters=(20.0, 14.0, 9.0), step_depths=(4.0, 8.0, HIGH))
+    steps = shape(sizes).counterbores
+    assert [(s.diameter, s.depth, s.core) for s in steps] == [(14.0, 8.0, 9.0), (20.0, 4.0, 9.0)]
+
+
+def test_a_ball_shaped_bottom_is_drilled_no_deeper_than_it_is():
+    bore = shape(hole(30, 30, 8, 12.0, bottom_radius=4.0)).bore
+    assert bore.point_length == approx(4.0) and not bore.is_flat
+    assert shape(hole(30, 30, 8, 12.0, bottom_radius=5.0)).bore.point_length == approx(2.0)
+
+
+def test_a_tapered_hole_is_refused():
+    with pytest.raises(Refused, match="tapered"):
+        shape(hole(30, 30, 8, taper_angle=3.0))
+
+
+def test_what_opens_away_at_the_far_end_is_told_and_the_hole_drilled():
+    sizes = hole(30, 30, 9, back_counterbore_diameter=15.0, back_counterbore_depth=4.0)
+    process = route(walled(sizes))
+    assert [o.kind for o in process.operations if o.feature == "hole-01"] == ["drill"]
+    assert "far end" in next(f.text for f in process.findings if f.code == "hole.not-reached")
+
+
+def test_the_process_tree_names_all_features_of_an_operation():
+    process = route(walled(*EQUAL))
+    root = etree.fromstring(process_xml(process, part_info()))
+    (equal,) = root.xpath("operation[@id='drill-hole-01']")
+    assert [e.get("id") for e in equal.findall("feature")] == ["hole-02", "hole-04"]
+    (single,) = root.xpath("operation[@id='drill-hole-03']")
+    assert not single.findall("feature")
+
+
+def test_a_fix_changes_no_drill_for_one_of_another_shape():
+    sunk = hole(50, 20, 6, countersink_diameter=12, countersink_angle=90)
+    process = route(walled(*EQUAL, sunk), **{"holes.spot": True})
+    job = RepairJob(shop=SHOP, choices={})
+    for o in (o for o in process.operations if o.tool.form in ("drill", "form")):
+        other = next_tool(process, o, job, lambda t: True)
+        assert other is None or (other.diameter, other.point_angle, other.outline) == (
+            o.tool.diameter,
+            o.tool.point_angle,
+            o.tool.outline,
+        )
+    spot = next(o for o in process.operations if o.kind == "spot")
+    assert next_tool(process, spot, job, lambda t: True) is None

@@ -1,0 +1,41 @@
+"""What the proof takes for the load of drills: their whole circle, chips as thick as their point makes them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from pytest import approx
+
+from programs import section
+from trunnion.model.motion.cycle import Cycle, CycleKind
+from trunnion.model.motion.drilling import drilled
+from trunnion.shop import load_shop
+from trunnion.verify.judge.load import drill_shares
+from trunnion.verify.judge.overload import allowed_load
+
+SHOP = load_shop()
+DRILL = next(t for t in SHOP.tools if t.name == "DR-K D10")
+MILL = next(t for t in SHOP.tools if t.name == "AL3-regular D10 R0")
+PATH = drilled(
+    np.array([0.0, 0.0, 20.0]),
+    np.array([[10.0, 10.0, 2.0]]),
+    Cycle(kind=CycleKind.DRILL, depth=12.0),
+    1200.0,
+)
+
+
+def drilling(tool):
+    return replace(section("drill-hole-01", tool, PATH, 6000.0), width=10.0, depth=5.0, feed=1200.0)
+
+
+def test_a_drills_chip_is_as_thick_as_its_point_makes_it():
+    shares = drill_shares((drilling(DRILL), drilling(MILL)))
+    assert shares == approx([math.sin(math.radians(70.0)), 0.0])
+
+
+def test_a_drill_is_allowed_its_whole_circle_at_the_feed_of_its_data():
+    allowed = allowed_load(drilling(DRILL), SHOP.material("EN AW-7075"))
+    assert allowed.rate == approx(math.pi / 4 * 100.0 * 1200.0 / 1000.0)
+    assert allowed.chip == approx(math.sin(math.radians(70.0)) * 1200.0 / (2 * 6000.0))
