@@ -33,6 +33,8 @@ OTHER_WORDS = {
     # codes of findings that the strategies on curved faces share, beside what they share
     "trunnion/toolpath/contact_passes/choices.py": {"surface."},
     "trunnion/toolpath/contact_passes/upright/fixed_axis.py": {"surface."},
+    # the kind of features that is recognised alike in parts of every family
+    "trunnion/recognize/holes/features.py": {"hole"},
     # an element of the features' schema
     "trunnion/store/features.py": {"island"},
 }
