@@ -227,6 +227,12 @@ def turned(shape: Any, axis: Triple, degrees: float, about: Triple = (0.0, 0.0, 
     return cq.Shape.cast(shape).rotate(cq.Vector(*about), cq.Vector(*end), degrees).wrapped
 
 
+def turned_direction(direction: Triple, axis: Triple, degrees: float) -> tuple[float, ...]:
+    """Return where a direction looks when it is turned with a shape."""
+    tip = cq.Vertex.makeVertex(*direction)
+    return cq.Shape.cast(turned(tip.wrapped, axis, degrees)).Center().toTuple()
+
+
 def mirrored(shape: Any, plane: str = "YZ") -> Any:
     """Return a shape mirrored in a plane through the origin."""
     return cq.Shape.cast(shape).mirror(plane).wrapped

@@ -19,6 +19,19 @@ LONGEST_BLOCK = 3600.0
 """s: no block of a milling program takes longer, nor does a dwell: a path of 4 m at 70 mm/min is done by then."""
 
 
+SIZE_DECIMALS = 4
+"""Sizes of features are given to a tenth of a micrometre: what is beyond is rounding of a file's numbers."""
+
+
+def rounded(value: float) -> float:
+    """Return a size of a feature without the noise of a file's numbers, and without a negative zero.
+
+    >>> rounded(19.99999999), rounded(-1e-12)
+    (20.0, 0.0)
+    """
+    return round(float(value), SIZE_DECIMALS) + 0.0
+
+
 def radians(degrees: float) -> float:
     """Return an angle in radians from one in degrees."""
     return math.radians(degrees)

@@ -18,7 +18,7 @@ from trunnion.recognize.grow import bend_radius
 
 PART = "part"
 ROLES = {
-    "depth": ("floor", "wall"),
+    "depth": ("floor", "wall", "bottom", "side"),
     "floor_z": ("floor",),
     "floors_z": ("floor",),
     "top_z": ("top", "wall"),
@@ -32,9 +32,20 @@ ROLES = {
     "height": ("top", "wall"),
     "lower_height": ("top",),
     "below_top": ("top",),
+    "diameter": ("side",),
+    "point_angle": ("bottom",),
+    "counterbore_diameter": ("counterbore_side",),
+    "counterbore_depth": ("counterbore_floor", "counterbore_side"),
+    "countersink_diameter": ("countersink",),
+    "countersink_angle": ("countersink",),
 }
 """The roles that a size is measured at: the first that the feature has."""
-SINGULAR = {"floors_z": "floor_z", "leans": "lean"}
+SINGULAR = {
+    "floors_z": "floor_z",
+    "leans": "lean",
+    "diameters": "step_diameter",
+    "step_depths": "step_depth",
+}
 """What one value of a size with several is called."""
 DECIMALS = 4
 UNITS = (("lean", "degrees"), ("angle", "degrees"), ("area", "mm2"), ("ratio", ""))

@@ -21,7 +21,7 @@ from trunnion_gui.look.words import amount, sentence
 if TYPE_CHECKING:
     from trunnion_gui.menus.window_access import WindowAccess
 
-SIZES = ("depth", "thickness", "height", "diameter", "feature_size")
+SIZES = ("diameter", "depth", "thickness", "height", "feature_size")
 """Names of sizes, the most important one of a feature first."""
 LegendRow = tuple[str, str, str]
 """Colour, words and count; without a colour a heading, without words either a gap."""

@@ -6,7 +6,7 @@ from trunnion.model.feature import Size
 from trunnion.units import trimmed
 
 _ANGLES = ("lean", "angle", "taper")
-_PLAIN = ("count", "n_", "centre_count")
+_PLAIN = ("count_", "n_")
 
 
 def kind_words(kind: str) -> str:
@@ -73,6 +73,8 @@ def size_unit(name: str, value: Size) -> str:
 
     >>> size_unit("depth", 30.0), size_unit("lean", 3.0), size_unit("area", 1800.0), size_unit("size_ratio", 0.9), size_unit("count", 4)
     ('mm', '°', 'mm²', '', '')
+    >>> size_unit("counterbore_depth", 12.0), size_unit("countersink_angle", 90.0)
+    ('mm', '°')
     """
     if (
         isinstance(value, (bool, str))

@@ -33,7 +33,7 @@ SHAPES = """
 above angles arc boundary bounded bounds column constant corner cost curve direction distance
 exact extreme figure fit fitting general geometry grid grow intersection lattice least limits
 locations measure measuring meshing one order ordered parallel path piece planned points radii
-radius range raw samples segments shape side slopes smallest space spacing sphere symmetry three
+radius range raw samples segment shape side slopes smallest space spacing sphere symmetry three
 time timing tracing
 """
 """Plain words of geometry and arithmetic."""

@@ -37,6 +37,8 @@ OTHER_WORDS = {
     "trunnion/plan/holes/drive.py": {"hole."},
     "trunnion/plan/holes/settings.py": {"hole."},
     "trunnion/toolpath/motion/hole_access.py": {"hole."},
+    # the kind of features that is recognised alike in parts of every family
+    "trunnion/recognize/holes/features.py": {"hole"},
     # an element of the features' schema
     "trunnion/store/features.py": {"island"},
 }

@@ -24,6 +24,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.setup import Setup
 from trunnion.recognize.grow import bend_radius
+from trunnion.recognize.holes.sweep import arcs, axis_frame, holds
 
 AROUND = 150.0
 """mm: how far free space is looked at around the blank; more than two diameters of the largest cutter."""
@@ -149,10 +150,11 @@ class SetupSpace:
                     [graph.start[edges], graph.middle[edges], graph.end[edges], graph.centre[[row]]]
                 )
                 plan = frame.to_local(rim)[:, :2]
+                crest = _crest(graph, row, frame)
                 self._ceilings.append(
                     _Ceiling(
-                        float(z[own & down].max()),
-                        float(z[own].max()),
+                        max(float(z[own & down].max()), crest),
+                        max(float(z[own].max()), crest),
                         plan.min(axis=0),
                         plan.max(axis=0),
                     )
@@ -496,6 +498,21 @@ def same_curve(a: Curve, b: Curve) -> bool:
     if a.closed and abs(a.area - b.area) >= tolerance.SEW * max(a.length, 1.0):
         return False
     return bool((a.distance(b.points) < tolerance.SEW).all())
+
+
+def _crest(graph: FaceGraph, row: int, frame: Frame) -> float:
+    """Return the height of the highest line of a lying hollow cylinder, minus infinity where the face has none: between its samples the
+    vault of a hole in a wall is higher than these, and a section there would run out through it."""
+    if graph.surface[row] != "cylinder" or graph.bend[row] >= 0:
+        return -np.inf
+    axis = frame.local_direction(graph.axis[row])
+    if abs(float(axis[2])) > tolerance.ANGLE:
+        return -np.inf
+    around = axis_frame(graph.axis_point[row], graph.axis[row])
+    up = around.local_direction(frame.z)
+    if not holds(arcs(graph, graph.edges_of[row], around), float(np.arctan2(up[1], up[0]))):
+        return -np.inf
+    return float(frame.to_local(graph.axis_point[row])[2] + graph.radius[row])
 
 
 def _distinct(heights: Iterable[float]) -> list[float]:

@@ -13,6 +13,7 @@ from trunnion.model.feature import Feature, Recognition
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Slicer, Smallest, Suitability
 from trunnion.recognize.extent import box
+from trunnion.recognize.holes.recognize import find_holes
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
 from trunnion.recognize.panel.features import (
     FeatureNumbers,
@@ -22,6 +23,7 @@ from trunnion.recognize.panel.features import (
     make_profile,
 )
 from trunnion.recognize.panel.frame import choose_frame, flipped, height_frame
+from trunnion.recognize.panel.holes import PanelHoles
 from trunnion.recognize.panel.kinds import KINDS
 from trunnion.recognize.panel.pockets.rules import GraphFeatures, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
@@ -56,6 +58,7 @@ class PanelFamily:
             kinds=("pocket", "open_pocket", "island"),
         ),
         Smallest(name="thinnest_rib", size="thickness", kinds=("rib",)),
+        Smallest(name="smallest_hole", size="diameter", kinds=("hole",)),
     )
 
     def suits(self, graph: FaceGraph) -> Suitability:
@@ -91,7 +94,9 @@ class PanelFamily:
         """Return the features of a panel. Raises `BadInput` when the part has no plane face, `Cancelled` when asked to stop."""
         progress.at(0.0, "choosing the frame")
         frame = progress.aside(lambda _: choose_frame(graph))
-        above, below = _views(graph, frame, slicer, settings, progress.part(0.1, 0.7))
+        progress.at(0.05, "looking for holes")
+        holes = progress.aside(partial(_holes, graph, frame, settings))
+        above, below = _views(graph, frame, slicer, settings, holes.rows, progress.part(0.1, 0.7))
         shown = []
         for view, share in ((above, 0.7), (below, 0.8)):
             progress.at(share, "growing pockets")
@@ -105,6 +110,7 @@ class PanelFamily:
             made = progress.aside(partial(_made, view, without(seen, done), above.graph, numbers))
             features.extend(made.features)
             findings.extend(made.findings)
+        features.extend(holes.features(features, numbers))
         around = _surroundings(above, shown, features)
         features.extend(around.features)
         findings.extend(around.findings)
@@ -133,6 +139,13 @@ class PanelFamily:
         )
 
 
+def _holes(
+    graph: FaceGraph, frame: Frame, settings: PanelSettings, progress: Progress
+) -> PanelHoles:
+    found = find_holes(graph, settings.hole_diameter, frame.z, progress)
+    return PanelHoles(graph=graph, frame=frame, holes=found)
+
+
 def _shown(view: PanelSide, progress: Progress) -> GraphFeatures:
     return pockets_of(view)
 
@@ -148,7 +161,12 @@ def _made(
 
 
 def _views(
-    graph: FaceGraph, frame: Frame, slicer: Slicer, settings: PanelSettings, progress: Progress
+    graph: FaceGraph,
+    frame: Frame,
+    slicer: Slicer,
+    settings: PanelSettings,
+    holes: frozenset[int],
+    progress: Progress,
 ) -> tuple[PanelSide, PanelSide]:
     """Return the part as seen from above and from below, cut once for both."""
     local = graph.in_frame(frame)
@@ -170,6 +188,7 @@ def _views(
             height=height,
             settings=settings,
             below=False,
+            holes=holes,
         ),
         PanelSide(
             graph=turned,
@@ -178,6 +197,7 @@ def _views(
             height=height,
             settings=settings,
             below=True,
+            holes=holes,
         ),
     )
 
@@ -185,8 +205,8 @@ def _views(
 def _surroundings(
     above: PanelSide, shown: list[GraphFeatures], features: list[Feature]
 ) -> SideFeatures:
-    """Return the outer profile and the datum faces: what no other feature holds."""
-    taken = {tag - 1 for f in features for tag in f.tags}
+    """Return the outer profile and the datum faces: what no other feature holds. The outline goes on through holes open on a side."""
+    taken = {tag - 1 for f in features if not f.attributes.get("open_side") for tag in f.tags}
     profile = make_profile(above, taken, "profile-01")
     top, bottom = ([f for f in seen.tops.highest if f not in taken] for seen in shown)
     datum = make_datum(top, bottom, above.height, "datum-01")

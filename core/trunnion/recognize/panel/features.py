@@ -18,7 +18,6 @@ from trunnion.recognize.panel.sizes import (
     island_sizes,
     pocket_sizes,
     rib_sizes,
-    rounded,
 )
 from trunnion.recognize.panel.slicing.confirm import (
     LEANING_REMEDY,
@@ -26,6 +25,7 @@ from trunnion.recognize.panel.slicing.confirm import (
     confirm,
     refusal,
 )
+from trunnion.units import rounded
 
 T = TypeVar("T")
 ROW = 0.01

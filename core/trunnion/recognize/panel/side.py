@@ -24,7 +24,8 @@ ON_RIM = 0.05
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PanelSide:
-    """One side of a panel, z up to it; `height` of the part; `below` marks the side that the recognition's z points away from."""
+    """One side of a panel, z up to it; `height` of the part; `below` marks the side that the recognition's z points away from; `holes` are
+    the rows of the faces of holes, which make no pocket."""
 
     graph: FaceGraph
     classes: FaceClasses
@@ -32,6 +33,7 @@ class PanelSide:
     height: float
     settings: PanelSettings
     below: bool
+    holes: frozenset[int] = frozenset()
 
     @cached_property
     def fillets(self) -> frozenset[int]:

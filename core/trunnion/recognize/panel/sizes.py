@@ -15,21 +15,10 @@ from trunnion.recognize.panel.pockets.rules import Island, Pocket
 from trunnion.recognize.panel.pockets.tops import mean_width
 from trunnion.recognize.panel.side import PanelSide
 from trunnion.tolerance import ANGLE, SLIVER
-
-DECIMALS = 4
-"""Sizes are given to a tenth of a micrometre: what is beyond is rounding of the file's numbers."""
+from trunnion.units import rounded
 
 LEAN_STEP = 0.05
 """degrees: leans closer than this are one lean."""
-
-
-def rounded(value: float) -> float:
-    """Return a size without the noise of the file's numbers, and without a negative zero.
-
-    >>> tidy(19.99999999), tidy(-1e-12)
-    (20.0, 0.0)
-    """
-    return round(float(value), DECIMALS) + 0.0
 
 
 def main_z(view: PanelSide, z: float) -> float:

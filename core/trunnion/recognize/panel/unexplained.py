@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-import numpy as np
-
 from trunnion.findings import Finding, face_tags, warning
 from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.recognize.panel.classes import FaceClass, FaceClasses
-from trunnion.tolerance import ANGLE
 
 WORDS = {
-    "panel.hole": ("holes are not handled yet", "drill them by hand-made operations"),
     "panel.chamfer": ("chamfers are not handled yet", "cut them by hand-made operations"),
     "panel.leaning-wall": (
         "leaning faces outside of pockets are not handled yet",
@@ -61,10 +57,6 @@ def rest_findings(
 
 def _sort(graph: FaceGraph, classes: FaceClasses, row: int) -> str:
     kind = classes.kind[row]
-    if _round(graph, row) or (
-        any(_round(graph, n) for n in graph.neighbours(row)) and _small_bottom(graph, row)
-    ):
-        return "panel.hole"
     if kind in (FaceClass.DOWN, FaceClass.OVERHANG):
         return "panel.underside"
     if kind is FaceClass.UP:
@@ -76,20 +68,3 @@ def _sort(graph: FaceGraph, classes: FaceClasses, row: int) -> str:
     if kind in (FaceClass.INNER, FaceClass.OUTER, FaceClass.STEEP):
         return "panel.leaning-wall"
     return "panel.unexplained"
-
-
-def _round(graph: FaceGraph, row: int) -> bool:
-    """Return whether a face is the side of a hole: hollow, round about an upright axis, closed about it."""
-    if (
-        graph.surface[row] not in ("cylinder", "cone")
-        or graph.bend[row] >= 0
-        or abs(graph.axis[row][2]) < np.cos(ANGLE)
-    ):
-        return False
-    span = graph.box_high[row] - graph.box_low[row]
-    return bool(min(span[0], span[1]) > 0.9 * max(span[0], span[1]))
-
-
-def _small_bottom(graph: FaceGraph, row: int) -> bool:
-    """Return whether a face is bounded by circles only, as the bottom of a hole is."""
-    return all(graph.curve[e] == "circle" for e in graph.edges_of[row])

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from trunnion.geometry.facegraph import CONVEX
-from trunnion.recognize.grow import grown, loops, same_surface
+from trunnion.recognize.grow import grown, loops
 from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.pockets.rings import WallRing, ring
 from trunnion.recognize.panel.pockets.tops import Tops, mean_width, sort_tops
 from trunnion.recognize.panel.side import PanelSide
-from trunnion.tolerance import ANGLE, SLIVER
+from trunnion.tolerance import SLIVER
 
 HEIGHT_DECIMALS = 3
 """Floors whose heights agree to a micrometre are equally high, whatever way the part lies."""
@@ -74,8 +74,7 @@ def pockets_of(view: PanelSide) -> GraphFeatures:
     tops = sort_tops(view)
     around = {floor: loops(view.graph, floor) for floor in tops.floors}
     outer = {floor: ring(view, floor, edges.get(0, ())) for floor, edges in around.items()}
-    bores = tuple(f for f in tops.floors if is_bore(view, f, outer[f]))
-    floors = tuple(f for f in tops.floors if f not in bores)
+    floors = tops.floors
     islands: dict[int, list[Island]] = {f: [] for f in floors}
     sunk: dict[int, int] = {}
     owners: dict[int, list[int]] = {}
@@ -162,7 +161,7 @@ def openings_in(view: PanelSide, face: int, known: set[int]) -> list[Pocket]:
             or known.intersection(sides)
         ):
             continue
-        if not is_round(view, sides):
+        if not view.holes.issuperset(sides):
             parent = face if view.z(face) < view.height - SLIVER else None
             found.append(
                 Pocket(
@@ -182,7 +181,8 @@ def island_on(view: PanelSide, floor: int, foot: WallRing) -> Island:
     graph, steep, kind = view.graph, view.classes.steep, view.classes.kind
 
     def is_island(edge: int, face: int, to: int) -> bool:
-        if to in (floor, *foot.fillets) or graph.box_low[to][2] < view.z(floor) - SLIVER:
+        below = graph.box_low[to][2] < view.z(floor) - SLIVER
+        if to in (floor, *foot.fillets) or to in view.holes or below:
             return False
         rising = steep[face] and kind[to] is FaceClass.UP and graph.convexity[edge] == CONVEX
         adjacent = steep[face] and steep[to] and not _crosses_top(view, edge, face)
@@ -197,28 +197,6 @@ def island_on(view: PanelSide, floor: int, foot: WallRing) -> Island:
         fillets=foot.fillets,
         walls=tuple(r for r in sides if r not in view.corners),
         corners=tuple(r for r in sides if r in view.corners),
-    )
-
-
-def is_bore(view: PanelSide, floor: int, around: WallRing) -> bool:
-    """Return whether a floor is the bottom of a bore: round, sharp, its side one hollow cylinder no wider than a hole may be."""
-    return bool(
-        not around.fillets
-        and not around.drops
-        and not around.slopes
-        and is_round(view, around.sides)
-    )
-
-
-def is_round(view: PanelSide, sides: tuple[int, ...]) -> bool:
-    """Return whether sides are one hollow cylinder, no wider than a hole may be."""
-    graph = view.graph
-    return bool(sides) and all(
-        graph.surface[s] == "cylinder"
-        and graph.bend[s] < 0
-        and same_surface(graph, sides[0], s, SLIVER, ANGLE)
-        and 2.0 * graph.radius[s] <= view.settings.hole_diameter + SLIVER
-        for s in sides
     )
 
 

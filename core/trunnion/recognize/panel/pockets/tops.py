@@ -29,13 +29,16 @@ class Tops:
 
 
 def sort_tops(view: PanelSide) -> Tops:
-    """Return what the faces that look up are."""
+    """Return what the faces that look up are; those of holes are none of these."""
     found: dict[str, list[int]] = {
         n: [] for n in ("highest", "ribs", "floors", "islands", "undercut")
     }
     for face in view.classes.rows(FaceClass.UP):
-        found[_sort(view, face)].append(face)
+        if face not in view.holes:
+            found[_sort(view, face)].append(face)
     for face in view.classes.rows(FaceClass.CROSS):
+        if face in view.holes:
+            continue
         if view.graph.surface[face] != "plane" and is_curved_floor(view, face):
             found["undercut" if view.undercut(face) else "floors"].append(face)
     return Tops(**{name: tuple(rows) for name, rows in found.items()})
@@ -75,7 +78,8 @@ def _sort(view: PanelSide, face: int) -> str:
 
 
 def _border(view: PanelSide, face: int) -> tuple[float, float]:
-    edges = view.graph.edges_of[face]
+    """Return the lengths of a face's border at the foot of something and over a drop; the rims of holes in it are none of it."""
+    edges = [e for e in view.graph.edges_of[face] if view.graph.across(e, face) not in view.holes]
     foot = [e for e in edges if _is_foot(view, e, face)]
     free = [e for e in edges if view.graph.convexity[e] == CONVEX]
     return float(np.sum(view.graph.length[foot])), float(np.sum(view.graph.length[free]))

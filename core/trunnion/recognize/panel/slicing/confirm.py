@@ -26,7 +26,10 @@ class ConfirmedPocket:
 
 
 def confirm(view: PanelSide, pocket: Pocket) -> ConfirmedPocket:
-    """Return a pocket with what slices and graph agree on. The slices decide what is open, the graph which faces belong to it."""
+    """Return a pocket with what slices and graph agree on. The slices decide what is open, the graph which faces belong to it.
+
+    A hole through a wall lets no cutter in: where a slice goes through one, the graph decides what is open and what stands in it.
+    """
     where = face_tags(f + 1 for f in (pocket.floors or pocket.sides))
     drops = set(pocket.drops) - set(pocket.sides)
     graph_open = bool(drops & set(view.profile))
@@ -57,7 +60,8 @@ def confirm(view: PanelSide, pocket: Pocket) -> ConfirmedPocket:
                 ),
             ),
         )
-    is_open = any(not view.tree.space(n).closed for n in nodes)
+    is_drilled = _has_holes_in_walls(view, pocket)
+    is_open = any(not view.tree.space(n).closed for n in nodes) and (graph_open or not is_drilled)
     found = []
     if is_open != graph_open:
         words = ("open", "closed") if is_open else ("closed", "open")
@@ -70,7 +74,8 @@ def confirm(view: PanelSide, pocket: Pocket) -> ConfirmedPocket:
             )
         )
     most_islands = max(len(view.tree.space(n).islands) for n in nodes)
-    if not is_open and len(nodes) == 1 and most_islands != len(pocket.islands):
+    differs = most_islands != len(pocket.islands) and not is_drilled
+    if not is_open and len(nodes) == 1 and differs:
         words = (str(most_islands), str(len(pocket.islands)))
         found.append(
             remark(
@@ -125,6 +130,10 @@ def refusal(
             pocket.floors or pocket.walls,
         )
     return None
+
+
+def _has_holes_in_walls(view: PanelSide, pocket: Pocket) -> bool:
+    return any(not view.holes.isdisjoint(view.graph.neighbours(side)) for side in pocket.sides)
 
 
 def _curved(view: PanelSide, pocket: Pocket) -> bool:
