@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -14,6 +13,7 @@ from drilled_parts import box, counterbored, cylinder, flat_hole, through
 from trunnion import tolerance
 from trunnion.model.feature import Feature, Recognition
 from trunnion.pipeline import Engine
+from trunnion.plan.holes.drive import KINDS
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
@@ -203,16 +203,19 @@ def test_the_section_of_a_pocket_does_not_run_out_through_a_hole_in_its_wall(x: 
     assert areas[0] == pytest.approx(areas[1], abs=tolerance.SEW)
 
 
-def test_holes_change_no_operation_and_are_said_not_to_be_planned() -> None:
+def test_holes_change_no_operation_but_their_own() -> None:
     engine = Engine()
-    tasks = []
+    others, own = [], []
     for cutters in (
         (),
         (through(6).translate((120, 40, HEIGHT)), flat_hole(3, 8).translate((80, 50, RIB))),
     ):
         session = engine.run(engine.open(samples.written(drilled(*cutters))), "route")
-        tasks.append([replace(o, faces=()) for o in session.process.operations])
-    assert tasks[0] == tasks[1]
-    (said,) = [f for f in session.findings() if "hole" in f.text]
-    assert said.code == "route.not-planned"
-    assert said.text == "hole-01, hole-02 not planned: the typical plan has no operation for a hole"
+        operations = session.process.operations
+        own.append([o for o in operations if o.kind in KINDS])
+        others.append(
+            [(o.id, o.strategy, o.cutter.name, o.data) for o in operations if o.kind not in KINDS]
+        )
+    assert others[0] == others[1]
+    assert not own[0]
+    assert {f for o in own[1] for f in o.all_features} == {"hole-01", "hole-02"}

@@ -22,7 +22,7 @@ from trunnion.findings import Finding, Severity
 if TYPE_CHECKING:
     from trunnion.model.feature import Recognition
 
-CHOSEN_FAMILY = "recognize.family"
+TAKEN_FOR = "recognize.family"
 """Code of the finding that says what a part was taken for."""
 MOST_NUMBERS = 10
 """Numbers of faces that a row of the table shows."""
@@ -91,9 +91,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _reasons(found: Recognition) -> tuple[Finding, ...]:
     """Return the notes that say why features are what they are; what the part was taken for stands over the table."""
-    return tuple(
-        f for f in found.findings if f.severity is Severity.INFO and f.code != CHOSEN_FAMILY
-    )
+    return tuple(f for f in found.findings if f.severity is Severity.INFO and f.code != TAKEN_FOR)
 
 
 def _feature_table(found: Recognition) -> str:

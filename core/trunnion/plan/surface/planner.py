@@ -13,6 +13,7 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.roughing.layers import plane_drive_of
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.surface_drives import space_from, surface_driven
+from trunnion.plan.holes.drive import HoleDrive, holes_driven
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.surface.route import CUTTER_RULES, make_surface_route
@@ -61,7 +62,11 @@ class SurfacePlanner:
     ) -> OperationDrive:
         """Return the drive that an operation's strategy needs."""
         return driven_by(
-            {PlaneDrive: _plane_driven, SurfaceDrive: surface_driven},
+            {
+                PlaneDrive: _plane_driven,
+                SurfaceDrive: surface_driven,
+                HoleDrive: holes_driven,
+            },
             self,
             operation,
             needs,
