@@ -6,9 +6,8 @@ import math
 
 from trunnion.model.material import DrillingTable, Machine, Material
 from trunnion.model.operation import CuttingData
-from trunnion.model.spindle import surface_speed, turns_of
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.milling import CuttingSettings
+from trunnion.plan.cutting.milling import CuttingSettings, within_spindle
 from trunnion.plan.cutting.power import NEWTON_METRES, drilling_power, drilling_thrust
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, trimmed
@@ -33,14 +32,8 @@ def drilling_data(
     """
     speed = table.speed * SLOWER.get(kind, 1.0) * settings.speed_share
     rules = [f"vc {trimmed(speed, 0)} m/min: drilling {table.title.lower()} ({table.name})"]
-    spindle = turns_of(speed, tool.diameter)
-    highest = min(machine.spindle_high, settings.spindle_limit)
-    if not machine.spindle_low <= spindle <= highest:
-        spindle = min(max(spindle, machine.spindle_low), highest)
-        speed = surface_speed(spindle, tool.diameter)
-        rules.append(
-            f"n {trimmed(spindle, 0)} 1/min: the spindle's limit, so vc is {trimmed(speed, 0)} m/min"
-        )
+    speed, spindle, bound = within_spindle(speed, tool, machine, settings)
+    rules += bound
     rows = [(d, low + table.feed_share * (high - low)) for d, low, high in table.feeds]
     turn = feed_at(rows, tool.diameter) * settings.feed_share
     rules.append(

@@ -147,6 +147,22 @@ def roughing_width(tool: Tool, material: Material, settings: CuttingSettings) ->
     return min(material.width_factor * settings.width_share, 1.0) * tool.diameter
 
 
+def within_spindle(
+    speed: float, tool: Tool, machine: Machine, settings: CuttingSettings
+) -> tuple[float, float, list[str]]:
+    """Return cutting speed (m/min) and spindle speed (1/min) within the machine's and a person's limits, and the bound in words if any."""
+    spindle = turns_of(speed, tool.diameter)
+    highest = min(machine.spindle_high, settings.spindle_limit)
+    if machine.spindle_low <= spindle <= highest:
+        return speed, spindle, []
+    spindle = min(max(spindle, machine.spindle_low), highest)
+    speed = surface_speed(spindle, tool.diameter)
+    words = (
+        f"n {trimmed(spindle, 0)} 1/min: the spindle's limit, so vc is {trimmed(speed, 0)} m/min"
+    )
+    return speed, spindle, [words]
+
+
 def cutting_data(
     tool: Tool,
     material: Material,
@@ -167,14 +183,8 @@ def cutting_data(
     rules = [
         f"vc {trimmed(speed, 0)} m/min: {material.name}, {'roughing' if rough else 'finishing'}"
     ]
-    spindle = turns_of(speed, tool.diameter)
-    highest = min(machine.spindle_high, settings.spindle_limit)
-    if not machine.spindle_low <= spindle <= highest:
-        spindle = min(max(spindle, machine.spindle_low), highest)
-        speed = surface_speed(spindle, tool.diameter)
-        rules.append(
-            f"n {trimmed(spindle, 0)} 1/min: the spindle's limit, so vc is {trimmed(speed, 0)} m/min"
-        )
+    speed, spindle, bound = within_spindle(speed, tool, machine, settings)
+    rules += bound
     width, depth = min(width, tool.diameter), min(depth, tool.flute_length)
     table = table_feed(material, tool.diameter) * settings.feed_share
     rules.append(
