@@ -87,6 +87,28 @@ def test_a_rapid_back_over_a_fresh_floor_is_clear():
     )
 
 
+def test_below_the_blank_a_rapid_meets_nothing():
+    # A ball below the bottom of a hole that it has drilled goes back down to where it was, as a peck does.
+    stops = [(20, 30, 25), (20, 30, -6), (20, 30, 25), (20, 30, 25), (20, 30, -6)]
+    drilled = program_section(bull(10.0, 5.0)(), stops[:3])
+    back = program_section(bull(10.0, 5.0)(), stops[3:], rapid_to=1)
+    moves = moves_of([drilled, back])
+    stock = Stock.of(BOX, 0.5)
+    run = run_stock(stock, moves, WORLD, Sweep.of(moves, 2.0))
+    assert stock.field.top.min() == 0.0
+    assert run.rapid_depth.max() == 0.0
+
+
+def test_below_the_blank_a_shank_meets_nothing():
+    # Shank and holder, wider than the flutes, stand below the bottom and in a hole that is wide enough for them.
+    tool = flat(10.0)(flute=5.0)
+    wide = program_section(flat(50.0)(), [(20, 30, 25), (20, 30, -1), (20, 30, 25)])
+    deep = program_section(tool, [(20, 30, 25), (20, 30, -20), (20, 30, 25)], rapid_to=2)
+    moves = moves_of([wide, deep])
+    run = run_stock(Stock.of(BOX, 0.5), moves, WORLD, Sweep.of(moves, 2.0))
+    assert run.body_depth[3:].max() == 0.0
+
+
 def test_a_sloped_rapid_is_judged_at_the_height_it_has():
     run = cut(
         flat(10.0)(), [(-20, 30, 15), (-20, 30, 15), (-6.5, 30, 19.0), (50, 30, 60)], rapid_to=4

@@ -1000,6 +1000,7 @@ def _max_depth_line(
     top: Floats,
     origin: Floats,
     pitch: float,
+    floor: float,
     x0: float,
     y0: float,
     x1: float,
@@ -1010,7 +1011,10 @@ def _max_depth_line(
     pieces: Floats,
 ) -> tuple[float, int]:
     """Return the greatest depth (mm) of a column in a cutter along a level line at z, and its flat
-    cell index, -1 without one."""
+    cell index, -1 without one.
+
+    A column at the floor is empty: a cutter below the blank's bottom is not in it.
+    """
     radius = profile[RADIUS]
     i0 = first_cell(min(x0, x1) - radius, origin[0], pitch)
     i1 = last_cell(max(x0, x1) + radius, origin[0], pitch, top.shape[1])
@@ -1023,7 +1027,7 @@ def _max_depth_line(
         y = origin[1] + (j + 0.5) * pitch
         for i in range(i0, i1 + 1):
             # A column that ends below the tip is clear of the cutter.
-            if top[j, i] <= z:
+            if top[j, i] <= z or top[j, i] <= floor:
                 continue
             d = _segment_distance_squared(origin[0] + (i + 0.5) * pitch, y, x0, y0, dx, dy, square)
             if d < limit:
@@ -1102,6 +1106,7 @@ def _max_cone_depth(
     top: Floats,
     origin: Floats,
     pitch: float,
+    floor: float,
     highest: float,
     move: Floats,
     line: Floats,
@@ -1113,8 +1118,8 @@ def _max_cone_depth(
     """Return the greatest depth (mm) of a column in truncated cones `first` to `last` along a level
     plan curve: the move's arc, or a line (4,) x, y to x, y.
 
-    highest: no column stands higher. A sloped arc is judged at its lowest z all along: it errs
-    deep.
+    floor: a column at it is empty; highest: no column stands higher. A sloped arc is judged at its
+    lowest z all along: it errs deep.
     """
     best = -np.inf
     dx, dy = line[2] - line[0], line[3] - line[1]
@@ -1130,7 +1135,7 @@ def _max_cone_depth(
             x1, y1 = max(line[0], line[2]) + radius, max(line[1], line[3]) + radius
         i0, i1 = first_cell(x0, origin[0], pitch), last_cell(x1, origin[0], pitch, top.shape[1])
         # Only columns that reach above the cone's lower end can enter it.
-        low = z + cones[k, 2]
+        low = max(z + cones[k, 2], floor)
         for j in range(
             first_cell(y0, origin[1], pitch), last_cell(y1, origin[1], pitch, top.shape[0]) + 1
         ):
@@ -1153,6 +1158,7 @@ def _collision_depth(
     top: Floats,
     origin: Floats,
     pitch: float,
+    floor: float,
     highest: float,
     move: Floats,
     is_rapid: bool,
@@ -1195,9 +1201,20 @@ def _collision_depth(
         d, c, b = -np.inf, -1, -np.inf
         if is_rapid:
             d, c = _max_depth_line(
-                top, origin, pitch, line[0], line[1], line[2], line[3], z, profile, arcs, pieces
+                top,
+                origin,
+                pitch,
+                floor,
+                line[0],
+                line[1],
+                line[2],
+                line[3],
+                z,
+                profile,
+                arcs,
+                pieces,
             )
-        b = _max_cone_depth(top, origin, pitch, highest, move, line, z, cones, first, last)
+        b = _max_cone_depth(top, origin, pitch, floor, highest, move, line, z, cones, first, last)
         # Where the stack is full the part is not halved: its bound counts as it is.
         worth = d > max(depth, allowed) or b > max(body, allowed)
         if (
@@ -1307,6 +1324,7 @@ def zmap_cut_loop(
                 top,
                 origin,
                 pitch,
+                floor,
                 highest,
                 move,
                 rapid[n],
