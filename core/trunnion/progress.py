@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sized
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -141,6 +143,32 @@ class Progress:
             raise outcome[1]
         made: T = outcome[0]
         return made
+
+    @contextmanager
+    def beside(self, work: Callable[[Progress], T]) -> Iterator[Callable[[], T]]:
+        """Do `work` in a thread of its own while the block runs; the block is given what waits for it and returns what it returns.
+
+        `work` must not change what the block uses. What it raises is raised by the wait. When the block fails or is cancelled, `work` is
+        told to stop and waited for.
+        """
+        stop = threading.Event()
+
+        def asked() -> bool:
+            return stop.is_set() or (self._cancelled is not None and self._cancelled())
+
+        with ThreadPoolExecutor(1, "trunnion-beside") as pool:
+            future = pool.submit(work, Progress(cancelled=asked))
+
+            def result() -> T:
+                while not wait([future], timeout=LOOK_S).done:
+                    self.check()
+                return future.result()
+
+            try:
+                yield result
+            except BaseException:
+                stop.set()
+                raise
 
     def _look(self) -> None:
         if self._cancelled is not None and self._cancelled():

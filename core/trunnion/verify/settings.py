@@ -35,12 +35,13 @@ class ProofSettings:
         help="Share of the reachable area that must be finished.",
     )
     cell: float = setting(
-        0.5,
+        0.0,
         unit="mm",
-        low=0.05,
+        low=0.0,
         high=10.0,
         label="Stock cell",
-        help="Distance of the columns that the stock is made of. Halving it takes four times the memory.",
+        help="Distance of the columns that the stock is made of. Halving it takes four times the memory. 0: as small as the "
+        "part is, between 0.15 and 0.5 mm; 0.5 mm where a tool leans.",
     )
     spacing: float = setting(
         2.0,

@@ -29,6 +29,11 @@ from trunnion.verify.stock import Stock, StockRun, run_stock
 NEAR = 2.0
 """mm: material left up to this is measured to the last digit, more to a hundredth."""
 BUNDLES = {"z": ("z",), "xyz": ("x", "y", "z")}
+FINEST, COARSEST = 0.15, 0.5
+"""mm: distances of columns where nobody chose one. The finer is about as narrow as what a finishing pass takes off a steep face, so that
+such a pass is not counted as air."""
+COLUMNS = 400_000
+"""Columns of a plain height field, about, at a distance that nobody chose: a small part gets finer ones at the cost of a large one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -71,15 +76,20 @@ def prove_setup(
     frame = program.setup.frame
     moves = progress.aside(lambda _: moves_of(program.sections), "Reading the moves")
     sweep = progress.aside(lambda _: Sweep.of(moves, NEAR), "Making the moves ready for questions")
-    penetration = contact.along(moves, progress.part(0.02, 0.4), settings.threads)
-    run = run_stock(stock, moves, frame, sweep, progress.part(0.4, 0.7), settings.threads)
+    # Cutting a height field keeps one core at work, the contact with the part the others.
+    with progress.beside(
+        lambda own: run_stock(stock, moves, frame, sweep, own, settings.threads)
+    ) as cutting:
+        penetration = contact.along(moves, progress.part(0.02, 0.6), settings.threads)
+        progress.at(0.6, "Cutting the stock")
+        run = cutting()
     deep = progress.aside(lambda _: stock.blank.depth(points, frame))
     residual, nearest = sweep.residual(points, deep, progress.part(0.7, 0.98), settings.threads)
     positions, times = progress.aside(
         lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves"
     )
     load = progress.aside(
-        lambda _: load_of(moves, run, times.speed, program.sections, settings.cell, material),
+        lambda _: load_of(moves, run, times.speed, program.sections, stock.pitch, material),
         "Weighing the load",
     )
     by_section = [np.flatnonzero(moves.section == k) for k in range(len(program.sections))]
@@ -113,6 +123,20 @@ def foot_of(blank: Blank, frame: Frame) -> Floats:
     """Return the middle of the blank's underside in a setup's frame (3,): it stands on the middle of the machine's table."""
     low, high = blank.box_in(frame)
     return np.array([*(0.5 * (low + high))[:2], low[2]])
+
+
+def stock_of(programs: Sequence[Program], blank: Blank, settings: ProofSettings) -> Stock:
+    """Return the whole blank as columns in the directions and at the distance that the settings say, or that suit programs and blank."""
+    bundles = bundles_of(programs, blank, settings)
+    return Stock.of(blank, settings.cell or _fitting_cell(blank, bundles), bundles)
+
+
+def _fitting_cell(blank: Blank, bundles: tuple[str, ...]) -> float:
+    """Return a distance of columns (mm): as fine as `COLUMNS` of them allow, `COARSEST` where rays along all three axes are needed."""
+    if bundles != BUNDLES["z"]:
+        return COARSEST
+    low, high = blank.low, blank.high
+    return float(np.clip(np.sqrt(np.prod((high - low)[:2]) / COLUMNS), FINEST, COARSEST))
 
 
 def bundles_of(

@@ -28,12 +28,11 @@ from trunnion.verify.judge.coverage import covered
 from trunnion.verify.judge.findings import setup_findings
 from trunnion.verify.judge.operations import block_proof, operation_proofs
 from trunnion.verify.judge.overload import load_findings
-from trunnion.verify.judge.setups import SetupProof, bundles_of, prove_setup
+from trunnion.verify.judge.setups import SetupProof, prove_setup, stock_of
 from trunnion.verify.judge.sides import sides_of
 from trunnion.verify.machine.limits import limit_findings
 from trunnion.verify.motion import AXIS_LEAN, refuse_turning
 from trunnion.verify.settings import ProofSettings
-from trunnion.verify.stock import Stock
 
 
 def prove(
@@ -123,7 +122,7 @@ def prove_surfaces(
         surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets[0] if facets else None
     )
     stock = progress.aside(
-        lambda _: Stock.of(blank, settings.cell, bundles_of(programs, blank, settings)),
+        lambda _: stock_of(programs, blank, settings),
         "Filling the blank with rays",
     )
     proofs = []

@@ -22,6 +22,8 @@ from trunnion.verify.stock.stock import Stock
 
 FINE = 0.05
 """mm, distance of the rays in a cell that a rapid grazes."""
+BLOCKS = (2.0, 0.5)
+"""mm, about: widths of the blocks of cells that are asked about before single cells."""
 MOST_FINE = 10
 """Most of them along a side of a cell."""
 SHARES = 17
@@ -78,11 +80,18 @@ def recheck(
     columns around are gone too and only a fin between them can stand."""
     fins = cells < 0
     cells = np.where(fins, -1 - cells, cells)
-    down, across = np.divmod(cells, field.top.shape[1])
-    middle = field.low[:2] + (np.column_stack([across, down]) + 0.5) * field.pitch
-    half = field.pitch * np.sqrt(0.5)
-    low = _positions(moves, row, middle, half)[0]
-    open_ = _cut_around(stock, low, half, frame, sweep, row)
+    index = np.column_stack(np.divmod(cells, field.top.shape[1])[::-1])
+    open_ = np.zeros(len(cells), dtype=bool)
+    # Most of what a rapid passes is open far around: blocks of cells are asked about first.
+    for size in sorted({max(round(b / field.pitch), 1) for b in BLOCKS} | {1}, reverse=True):
+        doubtful = np.flatnonzero(~open_)
+        blocks, of = np.unique(index[doubtful] // size, axis=0, return_inverse=True)
+        width = size * field.pitch
+        low = _positions(moves, row, field.low[:2] + (blocks + 0.5) * width, width * np.sqrt(0.5))[
+            0
+        ]
+        open_[doubtful] = _cut_around(stock, low, width * np.sqrt(0.5), frame, sweep, row)[of]
+    middle = field.low[:2] + (index + 0.5) * field.pitch
     count = rays_in_cell(field.pitch)
     offsets = ((np.arange(count) + 0.5) / count - 0.5) * field.pitch
     grid = np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2)
