@@ -143,6 +143,27 @@ def test_a_short_widening_counts_for_no_more_than_its_own_section():
     ] == approx(2.9 * 6.5 * 3.0)
 
 
+def test_what_a_neighbour_takes_off_goes_at_the_neighbours_feed():
+    # A slow block takes 20 mm2, a quick one of the same length 2 mm2: within a diameter the quick one bears (20 * 500 + 2 * 3000) / 2.
+    section = program_section(SLOTTER, [(0.0, 0.0, 0.0), (5.0, 0.0, 0.0), (10.0, 0.0, 0.0)])
+    moves = moves_of((replace(section, spindle=10000.0),))
+    taken, feed = np.array([0.0, 100.0, 10.0]), np.array([0.0, 500.0, 3000.0])
+    run = StockRun(
+        removed=taken,
+        rapid_depth=np.zeros(3),
+        rapid_position=np.zeros((3, 3)),
+        body_depth=np.zeros(3),
+        engagement=np.full(3, math.pi / 2),
+        depth_of_cut=np.full(3, 4.0),
+        widest=np.zeros(3),
+        peak=np.ones(3),
+    )
+    load = load_of(moves, run, feed / 60.0, (section,), 0.5, MATERIAL)
+    # The window of 10 mm about a block of 5 mm reaches over half of each neighbour.
+    assert load.rate[2] == approx((2.5 * 20 * 500 + 5 * 2 * 3000) / 7.5 / 1000.0)
+    assert load.rate[1] == approx((5 * 20 * 500 + 2.5 * 2 * 3000) / 7.5 / 1000.0)
+
+
 def test_the_mean_chip_over_half_a_turn_is_two_over_pi():
     assert mean_share(np.array([math.pi, math.pi / 2, 0.0])) == approx(
         [2 / math.pi, 2 / math.pi, 0.0]

@@ -70,7 +70,8 @@ def load_of(
     )
     seen = np.clip(run.engagement, 0.0, math.pi)
     width = radius * (1.0 - np.cos(seen))
-    mean_area = stretched(moves, run.removed, np.maximum(2.0 * STRETCH * radius, CELLS * cell))
+    stretch = np.maximum(2.0 * STRETCH * radius, CELLS * cell)
+    mean_area = stretched(moves, run.removed, stretch)
     # A long block cuts, where it is widest, what its mean says times how much wider it is there, and no more than fits.
     # What is narrower than the stock's cells is missing in the mean of widths: the widest stretch itself is the other bound.
     area = np.maximum(mean_area, np.minimum(mean_area * run.peak, run.widest * run.depth_of_cut))
@@ -78,12 +79,22 @@ def load_of(
     cuts = (area > 0.0) & ~moves.rapid & ((run.removed > 0.0) | (run.engagement > 0.0))
     angle = np.maximum(seen, least_angle(area, radius, flute))
     feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
-    rate = np.where(cuts, area, 0.0) * feed / MM_PER_METRE
-    per_tooth = np.divide(feed, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STOPPED)
+    # What a neighbour takes off goes at the neighbour's feed, in chips of that feed: a flat turn after a slow helix doesn't take the
+    # helix's share at its own.
+    flow = stretched(moves, run.removed * speed * SECONDS_PER_MINUTE, stretch)
+    wider = np.divide(area, mean_area, out=np.zeros(len(moves)), where=cuts)
+    rate = flow * wider / MM_PER_METRE
+    per_tooth, around = (
+        np.divide(f, teeth * spindle, out=np.zeros(len(moves)), where=spindle > STOPPED)
+        for f in (
+            feed,
+            np.divide(flow, mean_area, out=np.zeros(len(moves)), where=cuts),
+        )
+    )
     axial = drill_shares(sections)[moves.section] if len(moves) else np.zeros(0)
     drills = axial > 0.0
     chip = per_tooth * np.where(drills, axial, np.sin(np.minimum(angle, math.pi / 2.0)))
-    mean = per_tooth * np.where(drills, axial, mean_share(angle))
+    mean = around * np.where(drills, axial, mean_share(angle))
     power = np.zeros(len(moves))
     if material is not None:
         power = np.where(
@@ -141,7 +152,7 @@ def specific_force(material: Material, chip: Floats) -> Floats:
 
 
 def stretched(moves: Moves, removed: Floats, stretch: Floats) -> Floats:
-    """Return the cross-section (n,) mm2 that each feed move takes away: volume over path length, on a stretch (n,) mm around it.
+    """Return the cross-section (n,) mm2 that each feed move takes away: volume (n,) over path length, on a stretch (n,) mm around it.
 
     A stretch does not go beyond a rapid: it ends there.
     """
