@@ -1,8 +1,8 @@
 """The frame of a panel: where a programmer would put it, whatever position and unit the file came in.
 
-z is the normal with the largest floor area seen from outside (floors lie at the foot of walls, so the flat back doesn't count), where
-floors don't decide the axis of most holes, x the longer side of the smallest rectangle around the outline, the origin the lowest corner of the box. Everything is decided by
-lengths and areas of the part itself, so that the frame moves with the part.
+z is the normal with the largest floor area seen from outside (floors lie at the foot of walls, so the flat back doesn't count); where no
+floor tells, holes do. x is the longer side of the smallest rectangle around the outline, the origin the lowest corner of the box. Everything
+is decided by lengths and areas of the part itself, so that the frame moves with the part.
 """
 
 from __future__ import annotations
@@ -89,8 +89,8 @@ def _height_axis(graph: FaceGraph, hole_diameter: float) -> Floats:
     """Return the direction that floors look to: the plane family with the largest floors times plan, then the sense with more floor.
 
     The plan keeps the sides of a boss on a thin plate, which stand on a floor as well, from being taken for floors; bottoms of holes are
-    none. Where floors don't decide, holes up to a diameter (mm) do: the axis that the larger area of them lies along, then the largest plan, then the sense that
-    more of them open to. A part that looks the same from either side keeps the sense of its file.
+    none. Where floors don't decide, holes up to a diameter (mm) do: the axis that the larger area of them lies along, then the largest
+    plan, then the sense that more of them open to. A part that looks the same from either side keeps the sense of its file.
     """
     planes = [r for r, s in enumerate(graph.surface) if s == "plane" and graph.area[r] > 0.0]
     if not planes:
