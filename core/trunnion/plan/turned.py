@@ -60,7 +60,10 @@ def turn_words(first: Setup, second: Setup) -> str:
 
 def zero_words(space: SetupSpace) -> str:
     """Return in words where a setup's zero lies from the finished part, for the blank's own edges may be cut away by then."""
-    points = space.setup.frame.to_local(_outline_points(space))
+    graph = space.part.graph()
+    points = space.setup.frame.to_local(
+        np.vstack([graph.start, graph.middle, graph.end, graph.sample_point])
+    )
     low, high = points.min(axis=0), points.max(axis=0)
     words = [_beside(axis, float(low[k]), float(high[k])) for k, axis in enumerate(AXES[:2])] + [
         _height(float(low[2]), float(high[2]))
@@ -78,11 +81,6 @@ def turned(first: SetupSpace, second: SetupSpace) -> Finding:
     )
 
 
-def _outline_points(space: SetupSpace) -> Floats:
-    graph = space.part.graph()
-    return np.vstack([graph.start, graph.middle, graph.end, graph.sample_point])
-
-
 def _beside(axis: str, low: float, high: float) -> str:
     """Return where zero lies along an axis from the sides of a part that reaches from low to high."""
     if math.isclose(low + high, 0.0, abs_tol=tolerance.SEW):
@@ -95,10 +93,11 @@ def _beside(axis: str, low: float, high: float) -> str:
 
 
 def _height(low: float, high: float) -> str:
-    """Return where zero lies in height from the face that is up, or from the one that the part stands on."""
-    face, away = (
-        ("the face that is up", -high) if abs(high) <= abs(low) else ("its lowest face", -low)
+    """Return where zero lies in height: at the face that is up, else from the one that the part lies on, which is finished by then."""
+    if abs(high) < tolerance.SEW:
+        return "Z at the face that is up"
+    if abs(low) < tolerance.SEW:
+        return "Z at the face that it lies on"
+    return (
+        f"Z {trimmed(abs(low), 3)} mm {'over' if low < 0.0 else 'below'} the face that it lies on"
     )
-    if abs(away) < tolerance.SEW:
-        return f"Z at {face}"
-    return f"Z {trimmed(abs(away), 3)} mm {'over' if away > 0.0 else 'below'} {face}"

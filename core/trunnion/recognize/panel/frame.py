@@ -1,8 +1,8 @@
 """The frame of a panel: where a programmer would put it, whatever position and unit the file came in.
 
 z is the normal with the largest floor area seen from outside (floors lie at the foot of walls, so the flat back doesn't count); where no
-floor tells, holes do. x is the longer side of the smallest rectangle around the outline, the origin the lowest corner of the box. Everything
-is decided by lengths and areas of the part itself, so that the frame moves with the part.
+floor tells, holes do. x is the longer side of the smallest rectangle around the outline, the origin the lowest corner of the box.
+Everything is decided by lengths and areas of the part itself, so that the frame moves with the part.
 """
 
 from __future__ import annotations
