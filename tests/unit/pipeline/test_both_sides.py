@@ -11,7 +11,9 @@ from pytest import approx
 from drilled_parts import box, cylinder, pointed, through
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import Engine
-from trunnion.plan.turned import TURNED_OVER
+from trunnion.plan.flip import TURNED_OVER
+from trunnion.plan.settings import HALVES
+from trunnion.report.html import report_html
 from trunnion.tolerance import GOUGE
 
 COARSE = {"repair.rounds": 0, "verify.cell": 1.0, "verify.spacing": 3.0}
@@ -108,6 +110,13 @@ def test_the_note_on_turning_says_the_axis_and_where_zero_is(proven):
     assert "G55 of S2" in note.text and "5 mm outside its side of smallest X" in note.text
 
 
+def test_the_report_says_under_its_heading_how_a_setup_is_turned(proven, tmp_path):
+    page = report_html(proven, "plate", (), tmp_path)
+    heading = page.index("<h2>Setup S2</h2>")
+    assert "turned by 180 degrees about X of S1" in page[heading : page.index("<table>", heading)]
+    assert "is turned" not in page[:heading]
+
+
 def test_a_web_is_thin_below_a_setting(tmp_path):
     session = run(plate(), tmp_path, "route", **{"route.sides.thin_web": WEB})
     assert "route.thin-web" not in {f.code for f in session.findings()}
@@ -135,6 +144,32 @@ def test_what_stands_under_the_part_is_faced_from_below(tmp_path):
     session = run(made, tmp_path, "verify", **{"blank.bottom": 2.0})
     assert [o.id for o in session.process.of_setup("S2")] == ["face-S2"]
     assert session.verdict.outcome is Outcome.PASSED
+
+
+def test_what_is_below_is_planned_like_its_twin_above(tmp_path):
+    half = box((160.0, WIDTH, HEIGHT)).cut(pocket(36.0, 8.0, 50.0, 40.0))
+    half = half.cut(pocket(36.0, 4.0, 30.0, 40.0)).cut(pocket(150.0, 10.0, 90.0, 40.0))
+    half = half.cut(pocket(81.0, 6.0, 26.0, 40.0)).union(boss(81.0, 6.0, 9.0))
+    session = run(half.union(half.rotate(*BELOW).translate((0, WIDTH, 0))), tmp_path, "route")
+    kinds = [
+        sorted(
+            (o.kind, o.cutter.name, round(o.data.depth, 6))
+            for o in session.process.of_setup(setup)
+            if o.kind not in ("face", "profile_rough", "profile_finish")
+        )
+        for setup in ("S1", "S2")
+    ]
+    assert kinds[0] == kinds[1] and len(kinds[0]) > 12
+
+
+def test_halves_survive_a_project_file(tmp_path):
+    made = box((60.0, 50.0, 120.0)).cut(through(8, 130.0).translate((10.0, 10.0, 125.0)))
+    engine = Engine()
+    session = engine.run(opened(engine, made, tmp_path), until="route")
+    engine.save(session, tmp_path / "part.trunnion")
+    again = engine.open(tmp_path / "part.trunnion")
+    halves = [o.id for o in again.process.operations if o.choices.get(HALVES) is True]
+    assert len(halves) == 6 and len(again.setups) == 2
 
 
 def test_an_outline_deeper_than_every_cutter_is_cut_half_from_each_side(tmp_path):

@@ -22,6 +22,7 @@ from trunnion.plan.cutting.milling import (
 )
 from trunnion.plan.cutting.power import DRILL
 from trunnion.plan.feasibility import too_large
+from trunnion.plan.flip import turned
 from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
 from trunnion.plan.panel.fallbacks import (
     behind_rest_roughing,
@@ -53,7 +54,6 @@ from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.settings import HALVES, RouteSettings
 from trunnion.plan.setups import SetupSettings, turned_over
 from trunnion.plan.tool_choice import covered_by_few, depth_reached
-from trunnion.plan.turned import turned
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 from trunnion.settings import Value, choose
@@ -102,7 +102,7 @@ def make_route(
     near = adjacent(recognition, part)
     planned, refusals = without_lonely_ribs(*plannable(recognition, plan.stages), recognition, near)
     findings = not_planned(refusals, recognition)
-    chosen = choices or {}
+    words = choices or {}
     states = [
         PanelPlanState(
             space=SetupSpace.of(part, recognition, blank, setup),
@@ -112,10 +112,10 @@ def make_route(
             settings=settings,
             shop=shop,
             adjacent=near,
-            choices=chosen,
+            choices=words,
             progress=progress,
         )
-        for setup in _both_sides(setups, blank, shop, chosen)
+        for setup in _both_sides(setups, blank, shop, words)
     ]
     operations: list[Operation] = []
     cut: list[Feature] = []
@@ -129,9 +129,9 @@ def make_route(
         own = {id for o in made for id in o.all_features}
         here = [f for f in mine if f.id in own]
         findings += state.findings
-        if n and made:
+        if operations and made:
             findings.append(turned(states[0].space, state.space))
-            findings += thin_webs(state.space, here, cut, choose(SidesSettings, chosen).thin_web)
+            findings += thin_webs(state.space, here, cut, choose(SidesSettings, words).thin_web)
         operations += made
         cut += here
     used = {o.setup for o in operations} or {states[0].space.setup.name}
@@ -152,7 +152,7 @@ def _both_sides(
 def _with_cutters(
     state: PanelPlanState, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress
 ) -> list[OperationTask]:
-    """Return the tasks that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
+    """Return the tasks that have a cutter, words so that few cutters serve all; those that depend on another's cutter come last."""
     tasks: list[OperationTask] = []
     rounds = [
         [s for s in stages if s.cutter not in DEPENDENT],

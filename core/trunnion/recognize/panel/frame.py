@@ -32,7 +32,7 @@ BACK = 0.1
 BALANCE = 1e-4
 """Moments of the part that differ by less than this share of their largest value are equal: the part is symmetric that way."""
 
-STANDS = 0.25
+FIRM = 0.25
 """Share of the largest plan that a part still stands on when its holes decide: one that is drilled into its thin edge stays lying."""
 
 
@@ -160,7 +160,7 @@ def _along_holes(
 ) -> list[int]:
     """Return the rows of equally good directions that the largest area of holes lies along, from either sense, and the part stands on."""
     most = max(plan[k] for k in rows)
-    firm = [k for k in rows if plan[k] >= STANDS * most]
+    firm = [k for k in rows if plan[k] >= FIRM * most]
     area = {
         k: _hole_area(graph, holes, directions[k]) + _hole_area(graph, holes, -directions[k])
         for k in firm
