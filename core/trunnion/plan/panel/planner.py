@@ -13,7 +13,7 @@ from trunnion.plan.holes.drive import HoleDrive, holes_driven
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
 from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.rules import TASK_MAKERS
-from trunnion.plan.panel.settings import SidesSettings
+from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.settings import RouteSettings

@@ -37,7 +37,7 @@ from trunnion.plan.panel.feasibility import (
     without_lonely_ribs,
 )
 from trunnion.plan.panel.rules import TASK_MAKERS
-from trunnion.plan.panel.settings import SidesSettings
+from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.panel.sides import shared_out
 from trunnion.plan.panel.tasks import (
     DEPENDENT,

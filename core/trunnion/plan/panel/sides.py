@@ -9,7 +9,7 @@ from trunnion.findings import Refused
 from trunnion.model.feature import Feature, Recognition
 from trunnion.plan.holes.hole import is_plain_through, is_wider_behind
 from trunnion.plan.panel.hole_tasks import hole_reach
-from trunnion.plan.panel.settings import SidesSettings
+from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, PanelPlanState, catalogue
 from trunnion.plan.prismatic.regions import SectionSource
 from trunnion.plan.setups import from_below
