@@ -422,6 +422,22 @@ def test_the_far_end_is_seen_from_there_from_the_bore_outwards(sizes, steps):
     assert all(c.top == approx(HIGH) for c in seen.counterbores)
 
 
+def test_a_through_hole_whose_drill_meets_a_wall_is_drilled_from_the_other_side():
+    low = hole(36, 30, 3, 2.0, top_z=2.0, point_angle=140.0)
+    part, recognition = walled(low, wall=18.0)
+    tall = replace(
+        part, height=60.0, cuts=(*part.cuts[:1], replace(part.cuts[1], low=2.0, high=61))
+    )
+    process = route((tall, recognition))
+    assert [(o.kind, o.setup) for o in process.operations if o.feature == "hole-01"] == [
+        ("drill", "S2")
+    ]
+    assert not [f for f in process.findings if f.code == "route.no-cutter"]
+    blind = replace(recognition.features[0], sizes={**low, "through": False})
+    told = route((tall, replace(recognition, features=(blind,))))
+    assert [f.code for f in told.findings] == ["route.no-cutter"]
+
+
 def test_a_hole_too_deep_for_every_drill_is_drilled_half_from_each_side():
     part, recognition = walled(hole(30, 30, 8))
     tall = replace(part, height=120.0, cuts=(replace(part.cuts[0], high=121.0),))
