@@ -197,7 +197,8 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
     )
     process = with_manual_operations(session.process, process)
     return Result(
-        session=replace(session, setups=setups, process=process), findings=process.findings
+        session=replace(session, setups=process.setups or setups, process=process),
+        findings=process.findings,
     )
 
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from trunnion.settings import setting, settings
 
+HALVES = "route.sides.halves"
+"""Key of an operation's choices: true where it cuts the half of its feature that lies nearer to the tool, another setup the other one."""
+
 
 @settings("route")
 class RouteSettings:

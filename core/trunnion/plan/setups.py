@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
@@ -65,10 +66,15 @@ def make_setups(
     The second one is the first turned about its x axis. Frames are the work offsets' (`Setup.frame`). Each is on the machine that the
     settings name for it.
     """
-    frames = [blank.frame]
+    first = _setup(0, blank.frame, blank, settings)
     if any(from_below(f) for f in recognition):
-        frames.append(Frame(blank.frame.origin, blank.frame.x, -blank.frame.z))
-    return tuple(_setup(n, frame, blank, settings) for n, frame in enumerate(frames))
+        return first, turned_over(blank, settings)
+    return (first,)
+
+
+def turned_over(blank: Blank, settings: SetupSettings) -> Setup:
+    """Return the second setup: the first one turned about its x axis."""
+    return _setup(1, Frame(blank.frame.origin, blank.frame.x, -blank.frame.z), blank, settings)
 
 
 def held(setup: Setup, fixtures: Sequence[Fixture], blank: Blank) -> Setup:
@@ -79,9 +85,13 @@ def held(setup: Setup, fixtures: Sequence[Fixture], blank: Blank) -> Setup:
 
 
 def from_below(feature: Feature) -> bool:
-    """Return whether a feature is reached along the recognition frame's +z, from under the part."""
+    """Return whether a feature is reached along the recognition frame's +z, from under the part; holes that lean are not."""
     direction = feature.attributes.get("direction")
-    return isinstance(direction, tuple) and len(direction) == 3 and direction[2] < 0.0
+    return (
+        isinstance(direction, tuple)
+        and len(direction) == 3
+        and bool(direction[2] <= -np.cos(tolerance.ANGLE) * np.linalg.norm(direction))
+    )
 
 
 def _setup(n: int, frame: Frame, blank: Blank, settings: SetupSettings) -> Setup:

@@ -11,6 +11,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.repair import words_of
 from trunnion.model.session import Session
 from trunnion.model.spindle import FeedMode, SpindleMode
+from trunnion.plan.flip import TURNED_OVER, turn_words
 from trunnion.plan.freeform.estimate.finishing_time import Estimate
 from trunnion.report.pictures import Picture
 from trunnion.units import degrees, timed
@@ -58,7 +59,17 @@ def report_html(
         feed=feed,
         estimate=estimate,
         fix_words=words_of,
+        turns=turns(session),
     )
+
+
+def turns(session: Session) -> dict[str, str]:
+    """Return for each setup after the first how the part is turned for it, by the setup's name: what the route says, else from frames."""
+    if session.process is None:
+        return {}
+    notes = {f.where[0]: f.text for f in session.process.findings if f.code == TURNED_OVER}
+    setups = session.process.setups
+    return {s.name: notes.get(s.name) or turn_words(setups[0], s) for s in setups[1:]}
 
 
 def spindle(data: CuttingData) -> str:

@@ -20,7 +20,9 @@ from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.plan.holes.drive import hole_drive
 from trunnion.plan.holes.hole import hole_in
 from trunnion.plan.holes.tools import HoleSpace, drills_for, tip_of
+from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
 from trunnion.plan.panel.route import RouteSettings, make_route
+from trunnion.plan.panel.tasks import PanelPlanState
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.repair.tool_change import next_tool
@@ -371,11 +373,91 @@ def test_a_tapered_hole_is_refused():
         shape(hole(30, 30, 8, taper_angle=3.0))
 
 
-def test_what_opens_away_at_the_far_end_is_told_and_the_hole_drilled():
+def test_what_is_wider_at_the_far_end_is_widened_from_there_and_bored_once():
     sizes = hole(30, 30, 9, back_counterbore_diameter=15.0, back_counterbore_depth=4.0)
     process = route(walled(sizes))
-    assert [o.kind for o in process.operations if o.feature == "hole-01"] == ["drill"]
-    assert "far end" in next(f.text for f in process.findings if f.code == "hole.not-reached")
+    own = [o for o in process.operations if o.feature == "hole-01"]
+    assert [(o.kind, o.setup) for o in own] == [("drill", "S1"), ("counterbore", "S2")]
+    assert not [f for f in process.findings if f.code == "hole.not-reached"]
+
+
+def test_what_opens_away_at_the_far_end_is_told_where_no_other_side_is_planned():
+    sizes = hole(30, 30, 9, back_counterbore_diameter=15.0, back_counterbore_depth=4.0)
+    part, recognition = walled(sizes)
+    blank = blank_of(part)
+    (setup,) = make_setups(recognition, blank, choose(SetupSettings, {}))
+    state = PanelPlanState(
+        space=SetupSpace.of(part, recognition, blank, setup),
+        recognition=recognition,
+        material=SHOP.material(blank.material),
+        machine=SHOP.machine(setup.machine),
+        settings=choose(RouteSettings, {}),
+        shop=SHOP,
+        adjacent={},
+    )
+    (stage,) = [s for s in SHOP.plans["Panel, three axes"].stages if s.cutter == "drill"]
+    HOLE_TASK_MAKERS["drill"](state, stage, recognition.features)
+    assert "far end" in next(f.text for f in state.findings if f.code == "hole.not-reached")
+
+
+@pytest.mark.parametrize(
+    ("sizes", "steps"),
+    [
+        ({"back_counterbore_diameter": 15.0, "back_counterbore_depth": 4.0}, [(15.0, 4.0)]),
+        (
+            {
+                "back_counterbore_diameter": 15.0,
+                "back_counterbore_depth": 4.0,
+                "diameters": (9.0, 12.0, 15.0),
+                "step_depths": (8.0, 16.0, HIGH),
+            },
+            [(12.0, 12.0), (15.0, 4.0)],
+        ),
+    ],
+)
+def test_the_far_end_is_seen_from_there_from_the_bore_outwards(sizes, steps):
+    seen = shape(hole(30, 20, 9, **sizes), TURNED)
+    assert [c.diameter for c in seen.counterbores] == approx([d for d, _ in steps])
+    assert [c.depth for c in seen.counterbores] == approx([deep for _, deep in steps])
+    assert all(c.top == approx(HIGH) for c in seen.counterbores)
+
+
+def test_a_through_hole_whose_drill_meets_a_wall_is_drilled_from_the_other_side():
+    low = hole(36, 30, 3, 2.0, top_z=2.0, point_angle=140.0)
+    part, recognition = walled(low, wall=18.0)
+    tall = replace(
+        part, height=60.0, cuts=(*part.cuts[:1], replace(part.cuts[1], low=2.0, high=61))
+    )
+    process = route((tall, recognition))
+    assert [(o.kind, o.setup) for o in process.operations if o.feature == "hole-01"] == [
+        ("drill", "S2")
+    ]
+    assert not [f for f in process.findings if f.code == "route.no-cutter"]
+    blind = replace(recognition.features[0], sizes={**low, "through": False})
+    told = route((tall, replace(recognition, features=(blind,))))
+    assert [f.code for f in told.findings] == ["route.no-cutter"]
+
+
+def test_a_hole_too_deep_for_every_drill_is_drilled_half_from_each_side():
+    part, recognition = walled(hole(30, 30, 8))
+    tall = replace(part, height=120.0, cuts=(replace(part.cuts[0], high=121.0),))
+    (bore,) = recognition.features
+    deep = replace(bore, sizes={**bore.sizes, "top_z": 120.0, "depth": 120.0})
+    recognition = replace(recognition, features=(deep,))
+    process = route((tall, recognition))
+    drills = [o for o in process.operations if o.kind == "drill"]
+    assert [(o.id, o.setup) for o in drills] == [
+        ("drill-hole-01-S1", "S1"),
+        ("drill-hole-01-S2", "S2"),
+    ]
+    assert len({o.tool.name for o in drills}) == 1
+    halves = [
+        hole_drive(o, recognition, process, process.setup(o.setup).frame)[0].holes[0]
+        for o in drills
+    ]
+    assert [h.depth for h in halves] == approx([60.0, 60.0]) and all(h.through for h in halves)
+    whole = route((tall, recognition), **{"route.sides.halves": False})
+    assert [f.code for f in whole.findings] == ["route.no-cutter"] and len(whole.setups) == 1
 
 
 def test_the_process_tree_names_all_features_of_an_operation():

@@ -56,6 +56,13 @@ def test_a_feature_reached_from_below_gets_a_setup_turned_about_x():
     assert low == approx([0, 0, -32]) and high == approx([210, 110, 0])
 
 
+def test_a_hole_that_leans_downward_is_not_reached_from_below():
+    part, recognition = panel()
+    leaning = replace(BELOW, id="hole-09", kind="hole", attributes={"direction": (0.6, 0.0, -0.8)})
+    recognition = replace(recognition, features=(*recognition.features, leaning))
+    assert len(make_setups(recognition, blank_of(part), choose(SetupSettings, {}))) == 1
+
+
 def test_setups_after_the_first_may_stand_on_another_machine():
     part, recognition = panel()
     recognition = replace(recognition, features=(*recognition.features, BELOW))

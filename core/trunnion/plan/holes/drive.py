@@ -11,7 +11,8 @@ from trunnion.model.feature import Feature, Recognition
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
-from trunnion.plan.holes.hole import Countersink, HoleShape, PlannedHole, hole_in
+from trunnion.plan.holes.hole import Countersink, HoleShape, PlannedHole, hole_in, nearer_half
+from trunnion.plan.settings import HALVES
 from trunnion.progress import Progress
 
 NOT_REACHED = "hole.not-reached"
@@ -76,6 +77,8 @@ def hole_drive(
     for id in operation.all_features:
         try:
             shape = hole_in(features[id], recognition.frame, setup)
+            if operation.choices.get(HALVES) is True:
+                shape = nearer_half(shape)
             parts = _parts(operation, shape, process)
         except Refused as reason:
             findings.append(not_reached(features[id], str(reason)))

@@ -10,7 +10,7 @@ not the frame's z.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,8 @@ FLAT = 180.0
 """Point angle of a flat bottom, degrees."""
 FLAT_WITHIN = 0.05
 """Degrees: as far as directions are held to be parallel (`tolerance.ANGLE`)."""
+BACK = "back_"
+"""Stands before the names of sizes of a through hole's far end."""
 NEEDED = ("x", "y", "top_z", "diameter", "depth")
 """Sizes without which nothing is known of a hole."""
 
@@ -99,7 +101,7 @@ def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
     """Return a hole in a setup's frame; `frame` is the recognition's.
 
     Raises `Refused` where sizes are missing, or where the tool's axis does not run along the hole's. A plain hole that goes through is
-    reached from both of its ends.
+    reached from both of its ends, one that is wider at its far end from there with what is wider there.
     """
     missing = [name for name in NEEDED if not isinstance(_word(feature, name), (int, float))]
     if missing:
@@ -115,14 +117,14 @@ def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
     mouth = np.array([x, y, top])
     ends = setup.to_local(frame.to_world(np.stack([mouth, mouth - depth * out])))
     up = float(setup.local_direction(frame.world_direction(out))[2])
-    through, stepped = bool(_word(feature, "through")), _is_stepped(feature)
+    through, wide_ends = bool(_word(feature, "through")), is_wider_behind(feature)
     if 1.0 - abs(up) > 1.0 - math.cos(tolerance.ANGLE):
         lean = math.degrees(math.acos(min(abs(up), 1.0)))
         raise Refused(
             f"{feature.id}: its axis leans by {trimmed(lean, 2)} degrees from the tool's; it needs a setup or a tool that comes along it"
         )
     if up < 0.0:
-        if stepped or not through:
+        if not through or (_is_stepped(feature) and not wide_ends):
             raise Refused(f"{feature.id}: it opens away from the tool; it needs a setup from there")
         ends = ends[::-1]
     (x, y, top), bottom = ends[0].tolist(), float(ends[1, 2])
@@ -137,12 +139,32 @@ def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
         point_angle=_point_angle(feature, 0.5 * diameter),
         faces=feature.with_role("side", "bottom"),
     )
+    end = BACK if up < 0.0 else ""
     return HoleShape(
-        bore=bore, counterbores=_counterbores(feature, bore), countersink=_countersink(feature)
+        bore=bore,
+        counterbores=_counterbores(feature, bore, end),
+        countersink=_countersink(feature, end),
     )
 
 
-def _counterbores(feature: Feature, bore: PlannedHole) -> tuple[PlannedHole, ...]:
+def nearer_half(shape: HoleShape) -> HoleShape:
+    """Return the half of a plain through hole that lies nearer to the tool; drills go on past its end as past that of a whole one."""
+    bore = shape.bore
+    return HoleShape(
+        bore=replace(bore, bottom=0.5 * (bore.top + bore.bottom)), counterbores=(), countersink=None
+    )
+
+
+def is_plain_through(feature: Feature) -> bool:
+    """Return whether a hole goes through and is as wide at both ends: it may be made from either of them."""
+    return (
+        bool(_word(feature, "through"))
+        and not _is_stepped(feature)
+        and not is_wider_behind(feature)
+    )
+
+
+def _counterbores(feature: Feature, bore: PlannedHole, end: str) -> tuple[PlannedHole, ...]:
     return tuple(
         PlannedHole(
             feature=feature.id,
@@ -152,24 +174,29 @@ def _counterbores(feature: Feature, bore: PlannedHole) -> tuple[PlannedHole, ...
             bottom=bore.top - depth,
             diameter=diameter,
             through=False,
-            point_angle=_number(feature, "shoulder_angle", FLAT),
+            point_angle=_number(feature, f"{end}shoulder_angle", FLAT),
             core=bore.diameter,
             faces=feature.with_role("counterbore_side", "counterbore_floor"),
         )
-        for diameter, depth in _steps(feature, bore)
+        for diameter, depth in _steps(feature, bore, end)
     )
 
 
-def _steps(feature: Feature, bore: PlannedHole) -> list[tuple[float, float]]:
-    """Return diameter and depth of the wider parts at a hole's mouth, from the bore outwards.
+def _steps(feature: Feature, bore: PlannedHole, end: str) -> list[tuple[float, float]]:
+    """Return diameter and depth of the wider parts at a hole's mouth (`end` is empty) or at its far end, from the bore outwards.
 
     Of three diameters and more, `diameters` with `step_depths` tell them from the mouth down; else the counterbore's own sizes.
     """
     diameters, depths = _word(feature, "diameters"), _word(feature, "step_depths")
     if isinstance(diameters, tuple) and isinstance(depths, tuple):
         steps = list(zip(map(float, diameters), map(float, depths), strict=False))
+        if end:
+            begins = [0.0, *(deep for _, deep in steps)]
+            steps = [(d, bore.depth - low) for (d, _), low in zip(steps, begins, strict=False)]
+            steps.reverse()
     else:
-        steps = [(_number(feature, "counterbore_diameter"), _number(feature, "counterbore_depth"))]
+        names = f"{end}counterbore_diameter", f"{end}counterbore_depth"
+        steps = [(_number(feature, names[0]), _number(feature, names[1]))]
     found: list[tuple[float, float]] = []
     for diameter, depth in steps:
         if diameter <= bore.diameter + tolerance.SLIVER or depth <= 0.0:
@@ -178,9 +205,9 @@ def _steps(feature: Feature, bore: PlannedHole) -> list[tuple[float, float]]:
     return found[::-1]
 
 
-def _countersink(feature: Feature) -> Countersink | None:
-    diameter = _number(feature, "countersink_diameter", 0.0)
-    angle = _number(feature, "countersink_angle", 0.0)
+def _countersink(feature: Feature, end: str) -> Countersink | None:
+    diameter = _number(feature, f"{end}countersink_diameter", 0.0)
+    angle = _number(feature, f"{end}countersink_angle", 0.0)
     return Countersink(diameter=diameter, angle=angle) if diameter > 0.0 and angle > 0.0 else None
 
 
@@ -196,7 +223,7 @@ def _point_angle(feature: Feature, radius: float) -> float:
 def is_wider_behind(feature: Feature) -> bool:
     """Return whether a hole has a counterbore or a countersink at its far end."""
     return any(
-        _number(feature, f"back_{part}_diameter", 0.0) > 0.0
+        _number(feature, f"{BACK}{part}_diameter", 0.0) > 0.0
         for part in ("counterbore", "countersink")
     )
 

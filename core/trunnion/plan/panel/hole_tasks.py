@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from trunnion.findings import Finding, Refused, error, face_tags, warning
 from trunnion.geometry.plane.region import EMPTY_REGION
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
 from trunnion.plan.holes.drive import not_reached
-from trunnion.plan.holes.hole import HoleShape, PlannedHole, hole_in, is_wider_behind
+from trunnion.plan.holes.hole import (
+    HoleShape,
+    PlannedHole,
+    hole_in,
+    is_wider_behind,
+    nearer_half,
+)
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
 from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for, sinks_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
@@ -34,6 +40,20 @@ class HoleFit:
     faces: tuple[int, ...] | None = None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoleReach:
+    """A hole as a setup reaches it, with the drills for its bore, or the end mills where no drill fits."""
+
+    shape: HoleShape
+    drills: Candidates
+    mills: Candidates | None
+
+    @property
+    def has_tools(self) -> bool:
+        """Whether a tool makes the bore."""
+        return bool(self.drills.tools or (self.mills is not None and self.mills.tools))
+
+
 @dataclass(slots=True, kw_only=True)
 class HolePlanning:
     """What is known of a setup's holes while it is planned: their shapes, the drills for each, and what stands around them."""
@@ -44,10 +64,33 @@ class HolePlanning:
     drilling: DrillSettings
     drills: dict[str, Candidates]
     mills: dict[str, Candidates]
+    reaches: dict[tuple[str, bool], HoleReach] = field(default_factory=dict)
 
 
-def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) -> HolePlanning:
-    """Return what is known of the holes of a stage; a hole that the setup does not reach is told of once and left out."""
+def hole_reach(state: PanelPlanState, feature: Feature, half: bool = False) -> HoleReach:
+    """Return how a setup reaches a hole, or the half of it that lies nearer; raise `Refused` with why where it does not."""
+    known = _known(state)
+    if (feature.id, half) not in known.reaches:
+        shape = hole_in(feature, state.space.recognition.frame, state.space.setup.frame)
+        if not known.around.is_open((shape.bore, *shape.counterbores)[-1]):
+            raise Refused(
+                f"{feature.id}: the part covers its mouth; it needs a setup that sees it open"
+            )
+        if half:
+            shape = nearer_half(shape)
+        drills = drills_for(
+            shape.bore,
+            state.shop.tools_for(state.material.iso_group, "drill"),
+            known.around,
+            known.settings.diameter_tolerance,
+            known.drilling.breakthrough,
+        )
+        mills = None if drills.tools else _mills(state, known, shape.bore, shape.bore.top)
+        known.reaches[feature.id, half] = HoleReach(shape=shape, drills=drills, mills=mills)
+    return known.reaches[feature.id, half]
+
+
+def _known(state: PanelPlanState) -> HolePlanning:
     if state.holes is None:
         state.holes = HolePlanning(
             shapes={},
@@ -58,37 +101,42 @@ def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) 
             mills={},
         )
     known: HolePlanning = state.holes
+    return known
+
+
+def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) -> HolePlanning:
+    """Return what is known of the holes of a stage; a hole that the setup does not reach is told of once and left out."""
+    known = _known(state)
     for feature in state.progress.each(features):
         if feature.kind not in stage.on or feature.id in known.drills:
             continue
         known.drills[feature.id] = Candidates(tools=())
         try:
-            shape = hole_in(feature, state.space.recognition.frame, state.space.setup.frame)
-            if not known.around.is_open((shape.bore, *shape.counterbores)[-1]):
-                raise Refused(
-                    f"{feature.id}: the part covers its mouth; it needs a setup that sees it open"
-                )
+            reached = hole_reach(state, feature, feature.id in state.halved)
         except Refused as reason:
             state.findings.append(not_reached(feature, str(reason)))
             continue
-        known.shapes[feature.id] = shape
-        if is_wider_behind(feature):
+        known.shapes[feature.id] = reached.shape
+        if is_wider_behind(feature) and feature.id not in state.both_ends:
             state.findings.append(
                 not_reached(
                     feature,
                     f"{feature.id}: the wider part at its far end opens away from the tool",
                 )
             )
-        known.drills[feature.id] = drills_for(
-            shape.bore,
-            state.shop.tools_for(state.material.iso_group, "drill"),
-            known.around,
-            known.settings.diameter_tolerance,
-            known.drilling.breakthrough,
-        )
-        if not known.drills[feature.id].tools:
-            known.mills[feature.id] = _mills(state, known, shape.bore, shape.bore.top)
+        if feature.id in state.bored:
+            continue
+        known.drills[feature.id] = reached.drills
+        if reached.mills is not None:
+            known.mills[feature.id] = reached.mills
     return known
+
+
+def _bored_here(
+    state: PanelPlanState, known: HolePlanning, stage: Stage, features: Sequence[Feature]
+) -> list[tuple[Feature, HoleShape]]:
+    """Return the holes of a stage whose bores this setup makes."""
+    return [(f, s) for f, s in _of_stage(known, stage, features) if f.id not in state.bored]
 
 
 def _mills(state: PanelPlanState, known: HolePlanning, hole: PlannedHole, top: float) -> Candidates:
@@ -120,7 +168,7 @@ def _spot_tasks(
     )
     fitted = [
         HoleFit(feature=f, hole=shape.bore, found=found)
-        for f, shape in _of_stage(known, stage, features)
+        for f, shape in _bored_here(state, known, stage, features)
         if known.drills[f.id].tools
     ]
     # One spotting drill serves holes of all sizes: its cone says how wide.
@@ -136,7 +184,7 @@ def _drill_tasks(
         HoleFit(
             feature=f, hole=shape.bore, found=_either(known.drills[f.id], known.mills.get(f.id))
         )
-        for f, shape in _of_stage(known, stage, features)
+        for f, shape in _bored_here(state, known, stage, features)
         if known.drills[f.id].tools or not known.mills[f.id].tools
     ]
     return _tasks(
@@ -161,7 +209,7 @@ def _mill_tasks(
     known = _planning(state, stage, features)
     fitted = [
         HoleFit(feature=f, hole=shape.bore, found=known.mills[f.id])
-        for f, shape in _of_stage(known, stage, features)
+        for f, shape in _bored_here(state, known, stage, features)
         if f.id in known.mills and known.mills[f.id].tools
     ]
     return _tasks(state, stage, fitted, _size, _own)
@@ -179,7 +227,7 @@ def _floor_tasks(
             found=_mills(state, known, shape.bore, shape.bore.top),
             faces=f.with_role("bottom"),
         )
-        for f, shape in _of_stage(known, stage, features)
+        for f, shape in _bored_here(state, known, stage, features)
         if shape.bore.is_flat and known.drills[f.id].tools
     ]
     return _tasks(state, stage, fitted, _size, _own, no_floor_tool)
@@ -264,11 +312,12 @@ def _tasks(
     report: Callable[[Stage, Sequence[HoleFit], str, str], Finding] | None = None,
 ) -> list[OperationTask]:
     """Return a task for all holes of one size that one tool serves; holes that no tool fits become findings, one for each reason."""
-    groups: dict[tuple[object, ...], list[HoleFit]] = {}
+    groups: dict[tuple[bool, *tuple[object, ...]], list[HoleFit]] = {}
     missing: dict[tuple[str, str], list[HoleFit]] = {}
     for one in fitted:
         if one.found.tools:
-            groups.setdefault(size_of(one.hole), []).append(one)
+            is_half = one.feature.id in state.halved
+            groups.setdefault((is_half, *size_of(one.hole)), []).append(one)
         else:
             missing.setdefault((one.found.reason, one.found.remedy), []).append(one)
     state.findings += [
@@ -276,7 +325,7 @@ def _tasks(
         for (reason, remedy), holes in missing.items()
     ]
     return [
-        _task(stage, holes, tools, faces_of)
+        _task(state, stage, holes, tools, faces_of)
         for group in groups.values()
         for holes, tools in _served(group)
     ]
@@ -295,6 +344,7 @@ def _served(group: Sequence[HoleFit]) -> list[tuple[list[HoleFit], tuple[Tool, .
 
 
 def _task(
+    state: PanelPlanState,
     stage: Stage,
     holes: Sequence[HoleFit],
     tools: tuple[Tool, ...],
@@ -307,7 +357,8 @@ def _task(
     )
     number = f"{len(holes)} holes" if len(holes) > 1 else "one hole"
     return OperationTask(
-        id=f"{stage.kind}-{first.feature.id}",
+        id=state.task_id(stage, first.feature),
+        half=first.feature.id in state.halved,
         stage=stage,
         feature=first.feature.id,
         others=tuple(h.feature.id for h in holes[1:]),

@@ -13,6 +13,7 @@ from trunnion.plan.holes.drive import HoleDrive, holes_driven
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
 from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.rules import TASK_MAKERS
+from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.settings import RouteSettings
@@ -26,7 +27,12 @@ class PanelPlanner:
     """Plans pockets, ribs, islands, holes and the outline; its plane operations are driven by features, through the part's sections."""
 
     name, noun = "panel", "panels"
-    settings: tuple[type, ...] = (RouteSettings, HoleSettings, DrillSettings)
+    settings: tuple[type, ...] = (
+        RouteSettings,
+        SidesSettings,
+        HoleSettings,
+        DrillSettings,
+    )
     cutter_rules: tuple[str, ...] = tuple(TASK_MAKERS)
 
     def can_plan(self, part: Part) -> None:

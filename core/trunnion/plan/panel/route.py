@@ -22,6 +22,7 @@ from trunnion.plan.cutting.milling import (
 )
 from trunnion.plan.cutting.power import DRILL
 from trunnion.plan.feasibility import too_large
+from trunnion.plan.flip import turned
 from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
 from trunnion.plan.panel.fallbacks import (
     behind_rest_roughing,
@@ -36,6 +37,8 @@ from trunnion.plan.panel.feasibility import (
     without_lonely_ribs,
 )
 from trunnion.plan.panel.rules import TASK_MAKERS
+from trunnion.plan.panel.side_settings import SidesSettings
+from trunnion.plan.panel.sides import shared_out
 from trunnion.plan.panel.tasks import (
     DEPENDENT,
     OperationTask,
@@ -43,12 +46,13 @@ from trunnion.plan.panel.tasks import (
     floor_distance,
     with_falling_sizes,
 )
+from trunnion.plan.panel.webs import thin_webs
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.prismatic.regions import SectionSource, SetupSpace, parent_of
 from trunnion.plan.process import process_of
 from trunnion.plan.sequence import OrderedOperation, ordered
-from trunnion.plan.settings import RouteSettings
-from trunnion.plan.setups import from_below
+from trunnion.plan.settings import HALVES, RouteSettings
+from trunnion.plan.setups import SetupSettings, turned_over
 from trunnion.plan.tool_choice import covered_by_few, depth_reached
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
@@ -84,7 +88,8 @@ def make_route(
 
     Features that the typical plan does not know, or whose walls a vertical cutter would gouge or leave, become findings
     (`route.not-planned`); their material stays and the proof counts it. A cutter that does not exist is an error (`route.no-cutter`), so
-    is a blank that the machine can't take (`route.travel`; nothing is planned then). `choices` are a session's settings by full key.
+    is a blank that the machine can't take (`route.travel`; nothing is planned then). The process has the setups that cut anything: where
+    only one is given, the part is turned over for what that one can't reach. `choices` are a session's settings by full key.
     """
     plan = typical_plan(shop, recognition.family, settings.plan, tuple(TASK_MAKERS))
     material = shop.material(blank.material)
@@ -97,9 +102,9 @@ def make_route(
     near = adjacent(recognition, part)
     planned, refusals = without_lonely_ribs(*plannable(recognition, plan.stages), recognition, near)
     findings = not_planned(refusals, recognition)
-    operations: list[Operation] = []
-    for n, setup in enumerate(setups):
-        state = PanelPlanState(
+    words = choices or {}
+    states = [
+        PanelPlanState(
             space=SetupSpace.of(part, recognition, blank, setup),
             recognition=recognition,
             material=material,
@@ -107,29 +112,47 @@ def make_route(
             settings=settings,
             shop=shop,
             adjacent=near,
-            loaded=tuple(o.cutter for o in operations),
-            choices=choices or {},
+            choices=words,
+            progress=progress,
         )
-        mine = [f for f in planned if _from_below(f, recognition, part) == (n > 0)]
-        share = progress.part(n / len(setups), (n + 1) / len(setups))
+        for setup in _both_sides(setups, blank, shop, words)
+    ]
+    operations: list[Operation] = []
+    cut: list[Feature] = []
+    for n, (state, mine) in enumerate(
+        zip(states, shared_out(states, planned, plan.stages), strict=True)
+    ):
+        state.loaded = tuple(o.cutter for o in operations)
+        share = progress.part(n / len(states), (n + 1) / len(states))
         state.progress = share
-        operations += _sequenced(state, _with_cutters(state, mine, plan.stages, share), plan.stages)
+        made = _sequenced(state, _with_cutters(state, mine, plan.stages, share), plan.stages)
+        own = {id for o in made for id in o.all_features}
+        here = [f for f in mine if f.id in own]
         findings += state.findings
-    return process_of(operations, findings, plan=plan, material=material, setups=setups, shop=shop)
+        if operations and made:
+            findings.append(turned(states[0].space, state.space))
+            findings += thin_webs(state.space, here, cut, choose(SidesSettings, words).thin_web)
+        operations += made
+        cut += here
+    used = {o.setup for o in operations} or {states[0].space.setup.name}
+    kept = [state.space.setup for state in states if state.space.setup.name in used]
+    return process_of(operations, findings, plan=plan, material=material, setups=kept, shop=shop)
 
 
-def _from_below(feature: Feature, recognition: Recognition, part: SectionSource) -> bool:
-    """Return whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
-    tags = feature.with_role("floor", "top")
-    if "direction" in feature.attributes or not tags:
-        return from_below(feature)
-    return bool(recognition.frame.local_direction(part.graph().normal[tags[0] - 1])[2] < 0.0)
+def _both_sides(
+    setups: Sequence[Setup], blank: Blank, shop: Shop, choices: Mapping[str, Value]
+) -> Sequence[Setup]:
+    """Return the setups that features may be cut in: where there is one, the part turned over comes after it."""
+    if len(setups) != 1:
+        return setups
+    other = turned_over(blank, choose(SetupSettings, choices))
+    return setups if too_large(blank, (other,), shop) else (*setups, other)
 
 
 def _with_cutters(
     state: PanelPlanState, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress
 ) -> list[OperationTask]:
-    """Return the tasks that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
+    """Return the tasks that have a cutter, words so that few cutters serve all; those that depend on another's cutter come last."""
     tasks: list[OperationTask] = []
     rounds = [
         [s for s in stages if s.cutter not in DEPENDENT],
@@ -219,6 +242,8 @@ def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]
     )
     if stage.kind == "floor":
         choices["plane.floor.wall_distance"] = floor_distance(settings)
+    if task.half:
+        choices[HALVES] = True
     rules = (stage.rule, *_tool_rules(task, tool, settings))
     return Operation(
         id=task.id,

@@ -16,6 +16,7 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
+from trunnion.plan.prismatic.drive import profile_bottom
 from trunnion.plan.prismatic.regions import (
     Band,
     SetupSpace,
@@ -64,6 +65,7 @@ class OperationTask:
     """An operation that is wanted: its id, stage, feature and requirement; the cutter comes later. `height` is what it goes down in all.
 
     Of equal holes one task serves several: `others` are the further features, `found` the tools that fit them all, and `why` says so.
+    `half`: it cuts the nearer half, the rest is cut from the other side.
     """
 
     id: str
@@ -77,6 +79,7 @@ class OperationTask:
     others: tuple[str, ...] = ()
     found: Candidates | None = None
     why: str = ""
+    half: bool = False
 
     @property
     def all_features(self) -> tuple[str, ...]:
@@ -87,7 +90,8 @@ class OperationTask:
 @dataclass(slots=True)
 class PanelPlanState:
     """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way, `choices`
-    are a session's settings by full key, `holes` what the stages on holes have found out."""
+    are a session's settings by full key, `holes` what the stages on holes have found out. Ids of features that two setups share: `halved`
+    of those cut half from here and half from the other side, `both_ends` of holes that both widen, `bored` of those bored in the other."""
 
     space: SetupSpace
     recognition: Recognition
@@ -102,7 +106,16 @@ class PanelPlanState:
     tools: dict[str, Tool] = field(default_factory=dict)
     choices: Mapping[str, Value] = field(default_factory=dict)
     holes: Any = None
+    halved: set[str] = field(default_factory=set)
+    both_ends: set[str] = field(default_factory=set)
+    bored: set[str] = field(default_factory=set)
     progress: Progress = NO_PROGRESS
+
+    def task_id(self, stage: Stage, feature: Feature) -> str:
+        """Return the name of a stage's operation on a feature; what both sides cut has the setup's name in it."""
+        own = f"{stage.kind}-{feature.id}"
+        shared = feature.id in self.halved | self.both_ends
+        return f"{own}-{self.space.setup.name}" if shared else own
 
 
 def floor_distance(settings: RouteSettings) -> float:
@@ -436,8 +449,9 @@ def _profile_tasks(
             wanted = space.blank_area().minus(outline)
             if not wanted:
                 continue
+            depth = space.top - profile_bottom(space, feature.id in state.halved)
             requirement = ToolRequirement(
-                depth=space.top - space.bottom,
+                depth=depth,
                 envelope_area=space.around().minus(outline),
                 wanted=wanted,
                 corner_radius=0.0,
@@ -447,14 +461,15 @@ def _profile_tasks(
             side = float(np.max([low - space.blank_low[:2], space.blank_high[:2] - high]))
             found.append(
                 OperationTask(
-                    id=f"{stage.kind}-{feature.id}",
+                    id=state.task_id(stage, feature),
+                    half=feature.id in state.halved,
                     stage=stage,
                     feature=feature.id,
                     requirement=requirement,
                     width=side,
                     position=(float(space.blank_low[0]), float(space.blank_low[1])),
                     faces=feature.with_role("wall", "corner"),
-                    height=space.top - space.bottom,
+                    height=depth,
                 )
             )
     return found

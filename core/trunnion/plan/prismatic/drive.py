@@ -27,6 +27,7 @@ from trunnion.plan.prismatic.regions import (
     same_curve,
     touching,
 )
+from trunnion.plan.settings import HALVES
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -137,6 +138,9 @@ def foot_clearance(fillet: float, corner_radius: float, above: float) -> float:
 
 WALL_ALLOWANCE, FLOOR_ALLOWANCE = "route.wall_allowance", "route.floor_allowance"
 """Keys of an operation's choices that hold what it leaves on walls and floors, mm."""
+
+HALF_OVERLAP = 1.0
+"""mm that halves of the outline cut from both sides go on past its middle, so that no film stays between them."""
 
 OF_POCKETS = ("rough", "corner", "corner_finish", "floor", "wall", "foot")
 """Kinds of operation that a pocket's drive serves."""
@@ -398,9 +402,10 @@ def _top(
 
 def _profile(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
     outline = space.silhouette()
+    bottom = profile_bottom(space, operation.choices.get(HALVES) is True)
     level = DriveLevel(
         top=space.top,
-        bottom=space.bottom,
+        bottom=bottom,
         wanted=space.blank_area().minus(outline),
         boundary=space.around().minus(outline),
     )
@@ -408,7 +413,7 @@ def _profile(operation: Operation, feature: Feature, space: SetupSpace) -> Plane
         WallGuide(
             curve=piece.outer.reversed(),
             top=space.top,
-            bottom=space.bottom,
+            bottom=bottom,
             fillet=0.0,
             faces=feature.tags,
         )
@@ -424,6 +429,11 @@ def _profile(operation: Operation, feature: Feature, space: SetupSpace) -> Plane
         wall_allowance=_choice(operation, WALL_ALLOWANCE),
         floor_allowance=0.0,
     )
+
+
+def profile_bottom(space: SetupSpace, half: bool) -> float:
+    """Return how deep the outline is cut: to the part's bottom, or past its middle where the other half is cut from the other side."""
+    return 0.5 * (space.top + space.bottom) - HALF_OVERLAP if half else space.bottom
 
 
 def _level(band: Band) -> DriveLevel:

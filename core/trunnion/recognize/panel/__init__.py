@@ -93,7 +93,7 @@ class PanelFamily:
     ) -> Recognition:
         """Return the features of a panel. Raises `BadInput` when the part has no plane face, `Cancelled` when asked to stop."""
         progress.at(0.0, "choosing the frame")
-        frame = progress.aside(lambda _: choose_frame(graph))
+        frame = progress.aside(lambda _: choose_frame(graph, settings))
         progress.at(0.05, "looking for holes")
         holes = progress.aside(partial(_holes, graph, frame, settings))
         above, below = _views(graph, frame, slicer, settings, holes.rows, progress.part(0.1, 0.7))

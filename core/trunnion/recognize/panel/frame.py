@@ -1,13 +1,13 @@
 """The frame of a panel: where a programmer would put it, whatever position and unit the file came in.
 
-z is the normal with the largest floor area seen from outside (floors lie at the foot of walls, so the flat back doesn't count),
-x the longer side of the smallest rectangle around the outline, the origin the lowest corner of the box. Everything is decided by
-lengths and areas of the part itself, so that the frame moves with the part.
+z is the normal with the largest floor area seen from outside (floors lie at the foot of walls, so the flat back doesn't count); where no
+floor tells, holes do. x is the longer side of the smallest rectangle around the outline, the origin the lowest corner of the box.
+Everything is decided by lengths and areas of the part itself, so that the frame moves with the part.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from trunnion.geometry.facegraph import CONCAVE, SMOOTH, FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.recognize.extent import box, outline_points
 from trunnion.recognize.grow import samples
+from trunnion.recognize.holes.hole import SIDE, Hole
+from trunnion.recognize.holes.recognize import find_holes
+from trunnion.recognize.panel.settings import PanelSettings
+from trunnion.settings import choose
 from trunnion.tolerance import ANGLE, COINCIDENT, SLIVER
 
 DECIMALS = 9
@@ -28,10 +32,13 @@ BACK = 0.1
 BALANCE = 1e-4
 """Moments of the part that differ by less than this share of their largest value are equal: the part is symmetric that way."""
 
+FIRM = 0.25
+"""Share of the largest plan that a part still stands on when its holes decide: one that is drilled into its thin edge stays lying."""
 
-def choose_frame(graph: FaceGraph) -> Frame:
+
+def choose_frame(graph: FaceGraph, settings: PanelSettings | None = None) -> Frame:
     """Return the frame of recognition for a graph in the part's coordinates; raise `BadInput` when it has no plane face."""
-    flat = height_frame(graph)
+    flat = height_frame(graph, settings)
     local = graph.in_frame(flat)
     angle = _smallest_rectangle(outline_points(local))
     x = flat.world_direction(_long_axis(local, angle, flat.world_direction))
@@ -44,9 +51,9 @@ def choose_frame(graph: FaceGraph) -> Frame:
     )
 
 
-def height_frame(graph: FaceGraph) -> Frame:
+def height_frame(graph: FaceGraph, settings: PanelSettings | None = None) -> Frame:
     """Return a frame in the part's origin with the z of recognition and any x; raise `BadInput` when the part has no plane face."""
-    z = _height_axis(graph)
+    z = _height_axis(graph, (settings or choose(PanelSettings, {})).hole_diameter)
     return Frame(np.zeros(3), _any_across(graph, z), z)
 
 
@@ -78,11 +85,12 @@ def _rises(graph: FaceGraph, edge: int, face: int) -> bool:
     )
 
 
-def _height_axis(graph: FaceGraph) -> Floats:
+def _height_axis(graph: FaceGraph, hole_diameter: float) -> Floats:
     """Return the direction that floors look to: the plane family with the largest floors times plan, then the sense with more floor.
 
-    The plan keeps the sides of a boss on a thin plate, which stand on a floor as well, from being taken for floors. A part that looks
-    the same from either side keeps the sense of its file.
+    The plan keeps the sides of a boss on a thin plate, which stand on a floor as well, from being taken for floors; bottoms of holes are
+    none. Where floors don't decide, holes up to a diameter (mm) do: the axis that the larger area of them lies along, then the largest
+    plan, then the sense that more of them open to. A part that looks the same from either side keeps the sense of its file.
     """
     planes = [r for r, s in enumerate(graph.surface) if s == "plane" and graph.area[r] > 0.0]
     if not planes:
@@ -97,7 +105,11 @@ def _height_axis(graph: FaceGraph) -> Floats:
         else:
             near.append(r)
     directions = [graph.normal[f[0]] for f in families]
-    shares = [np.array([foot_share(graph, r) for r in f]) for f in families]
+    holes = find_holes(graph, hole_diameter, np.zeros(3))
+    drilled = {row for hole in holes for row in hole.faces}
+    shares = [
+        np.array([0.0 if r in drilled else foot_share(graph, r) for r in f]) for f in families
+    ]
     alike = [
         [k, *(n for n, other in enumerate(directions) if other @ direction < -np.cos(ANGLE))]
         for k, direction in enumerate(directions)
@@ -119,15 +131,49 @@ def _height_axis(graph: FaceGraph) -> Floats:
         both[k] = sum(float(seen[n] @ shares[n]) for n in alike[k]) * sum(
             float(seen[n].sum()) for n in alike[k]
         )
-    remaining = sorted(both)
-    plan = {k: sum(float(seen[n].sum()) for n in alike[k]) for k in remaining}
-    floors = {k: float(seen[k] @ shares[k]) for k in remaining}
-    for scores in (both, plan, floors):
-        most = max(scores[k] for k in remaining)
-        remaining = [k for k in remaining if scores[k] >= most * (1.0 - BALANCE)]
+    plan = {k: sum(float(seen[n].sum()) for n in alike[k]) for k in both}
+    floors = {k: float(seen[k] @ shares[k]) for k in both}
+    remaining = _best(sorted(both), both)
+    remaining = _along_holes(graph, holes, directions, remaining, plan)
+    remaining = _best(_best(remaining, plan), floors)
+    ended = [h for h in holes if not h.through or set(h.roles) != {SIDE}]
+    mouths = {k: _hole_area(graph, ended, directions[k]) for k in remaining}
+    remaining = _best(remaining, mouths)
     return max(
         (directions[k] for k in remaining),
         key=lambda direction: tuple(direction[::-1].round(DECIMALS)),
+    )
+
+
+def _best(rows: Sequence[int], scores: Mapping[int, float]) -> list[int]:
+    """Return the rows whose score is the largest, or as good as that."""
+    most = max(scores[k] for k in rows)
+    return [k for k in rows if scores[k] >= most * (1.0 - BALANCE)]
+
+
+def _along_holes(
+    graph: FaceGraph,
+    holes: Sequence[Hole],
+    directions: Sequence[Floats],
+    rows: Sequence[int],
+    plan: Mapping[int, float],
+) -> list[int]:
+    """Return the rows of equally good directions that the largest area of holes lies along, from either sense, and the part stands on."""
+    most = max(plan[k] for k in rows)
+    firm = [k for k in rows if plan[k] >= FIRM * most]
+    area = {
+        k: _hole_area(graph, holes, directions[k]) + _hole_area(graph, holes, -directions[k])
+        for k in firm
+    }
+    return _best(firm, area) if max(area.values()) > 0.0 else list(rows)
+
+
+def _hole_area(graph: FaceGraph, holes: Sequence[Hole], direction: Floats) -> float:
+    """Return the area (mm2) of the faces of the holes that are drilled from a direction (3,)."""
+    return sum(
+        float(graph.area[list(h.faces)].sum())
+        for h in holes
+        if h.direction @ direction > np.cos(ANGLE)
     )
 
 

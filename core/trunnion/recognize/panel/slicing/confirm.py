@@ -122,13 +122,6 @@ def refusal(
             "machine it from another side, or with a T-slot cutter",
             pocket.floors,
         )
-    if view.below:
-        return (
-            "panel.below",
-            "it is reached from below",
-            "add a setup for the other side",
-            pocket.floors or pocket.walls,
-        )
     return None
 
 

@@ -1,0 +1,123 @@
+"""Which setup makes a feature: the first that reaches it. What goes through belongs to the first setup, unless that can't reach it: then to
+the other one, or half to each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from trunnion.findings import Refused
+from trunnion.model.feature import Feature, Recognition
+from trunnion.plan.holes.hole import is_plain_through, is_wider_behind
+from trunnion.plan.panel.hole_tasks import hole_reach
+from trunnion.plan.panel.side_settings import SidesSettings
+from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, PanelPlanState, catalogue
+from trunnion.plan.prismatic.regions import SectionSource
+from trunnion.plan.setups import from_below
+from trunnion.plan.tool_choice import candidates
+from trunnion.settings import choose
+from trunnion.shop import Stage
+
+PROFILE_RULES = ("profile_rough", "profile_finish")
+"""Cutter rules of the stages that cut an outline, which goes through like a hole."""
+HOLE_RULES = ("drill", "hole_mill")
+"""Cutter rules of the stages that make the bore of a hole."""
+
+
+def shared_out(
+    states: Sequence[PanelPlanState], features: Sequence[Feature], stages: Sequence[Stage]
+) -> list[list[Feature]]:
+    """Return the features that each setup cuts, in order; the states are told which of them are cut from both sides."""
+    bored = {kind for s in stages if s.cutter in HOLE_RULES for kind in s.on}
+    outlines = {kind for s in stages if s.cutter in PROFILE_RULES for kind in s.on}
+    own: list[list[Feature]] = [[] for _ in states]
+    for feature in features:
+        if len(states) < 2:
+            numbers: tuple[int, ...] = (0,)
+        elif feature.kind in bored:
+            numbers = _of_hole(feature, states)
+        elif feature.kind in outlines:
+            numbers = _of_outline(feature, states, stages)
+        else:
+            recognition, part = states[0].recognition, states[0].space.part
+            numbers = (int(is_from_below(feature, recognition, part)),)
+        for n in numbers:
+            own[n].append(feature)
+    return own
+
+
+def is_from_below(feature: Feature, recognition: Recognition, part: SectionSource) -> bool:
+    """Return whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
+    tags = feature.with_role("floor", "top")
+    if "direction" in feature.attributes or not tags:
+        return from_below(feature)
+    return bool(recognition.frame.local_direction(part.graph().normal[tags[0] - 1])[2] < 0.0)
+
+
+def _of_hole(feature: Feature, states: Sequence[PanelPlanState]) -> tuple[int, ...]:
+    """Return the setups that make a hole: a plain one that goes through the first that has tools for it, or two for half of it each; one
+    that is wider at both ends both, the first of which bores it."""
+    first = int(from_below(feature))
+    if is_wider_behind(feature) and all(_is_reached(s, feature) for s in states):
+        for state in states:
+            state.both_ends.add(feature.id)
+        states[1].bored.add(feature.id)
+        return (0, 1)
+    if not is_plain_through(feature):
+        return (first,)
+    for n, state in enumerate(states):
+        if _has_tools(state, feature):
+            return (n,)
+    if _allows_halves(states[0]) and all(_has_tools(s, feature, half=True) for s in states):
+        return _halved(feature, states)
+    return (0,)
+
+
+def _is_reached(state: PanelPlanState, feature: Feature) -> bool:
+    try:
+        hole_reach(state, feature)
+    except Refused:
+        return False
+    return True
+
+
+def _has_tools(state: PanelPlanState, feature: Feature, half: bool = False) -> bool:
+    return _is_reached(state, feature) and hole_reach(state, feature, half).has_tools
+
+
+def _of_outline(
+    feature: Feature, states: Sequence[PanelPlanState], stages: Sequence[Stage]
+) -> tuple[int, ...]:
+    """Return the setups that cut an outline: the first, or both where no cutter is long enough for more than half of it."""
+    if _fits_outline(states[0], feature, stages) or not _allows_halves(states[0]):
+        return (0,)
+    numbers = _halved(feature, states)
+    if all(_fits_outline(state, feature, stages) for state in states):
+        return numbers
+    for state in states:
+        state.halved.discard(feature.id)
+    return (0,)
+
+
+def _fits_outline(state: PanelPlanState, feature: Feature, stages: Sequence[Stage]) -> bool:
+    """Return whether every stage on an outline has a cutter for it."""
+    return all(
+        candidates(
+            task.requirement,
+            catalogue(state, stage),
+            state.settings.reach_clearance,
+            state.progress,
+        ).tools
+        for stage in stages
+        if stage.cutter in PROFILE_RULES
+        for task in PLANE_TASK_MAKERS[stage.cutter](state, stage, [feature])
+    )
+
+
+def _halved(feature: Feature, states: Sequence[PanelPlanState]) -> tuple[int, ...]:
+    for state in states:
+        state.halved.add(feature.id)
+    return tuple(range(len(states)))
+
+
+def _allows_halves(state: PanelPlanState) -> bool:
+    return choose(SidesSettings, state.choices).halves
