@@ -153,11 +153,11 @@ class Progress:
         """
         stop = threading.Event()
 
-        def asked() -> bool:
+        def cancelled() -> bool:
             return stop.is_set() or (self._cancelled is not None and self._cancelled())
 
         with ThreadPoolExecutor(1, "trunnion-beside") as pool:
-            future = pool.submit(work, Progress(cancelled=asked))
+            future = pool.submit(work, Progress(cancelled=cancelled))
 
             def result() -> T:
                 while not wait([future], timeout=LOOK_S).done:

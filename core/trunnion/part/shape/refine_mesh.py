@@ -388,11 +388,7 @@ class _Net:
             owners += [self.face[rows]] * len(parts)
         kept = int(whole.sum())
         self.triangles, self.face = np.vstack(made), np.concatenate(owners)
-        if len(self.triangles) > MOST_TRIANGLES:
-            raise OutOfMemory(
-                f"{self.name} needs more than {MOST_TRIANGLES} triangles at a chord error of {self.limits.min():g} mm: "
-                "allow a larger one"
-            )
+        _refuse_many(len(self.triangles), self.name, float(self.limits.min()))
         return np.concatenate([middle[whole], np.full(len(self.triangles) - kept, np.nan)])
 
     def normals(self) -> Floats:
@@ -417,6 +413,13 @@ class _Net:
             triangles=self.triangles[order],
             face=self.face[order],
             bound=self.bound,
+        )
+
+
+def _refuse_many(count: int, name: str, chord: float) -> None:
+    if count > MOST_TRIANGLES:
+        raise OutOfMemory(
+            f"{name} needs more than {MOST_TRIANGLES} triangles at a chord error of {chord:g} mm: allow a larger one"
         )
 
 
@@ -467,6 +470,7 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
         triangles.append(t + count)
         faces.append(np.full(len(t), row))
         count += len(p)
+        _refuse_many(sum(map(len, triangles)), part.name, how.Deflection)
     border = _Border(
         *(np.concatenate([getattr(b, name) for b in borders]) for name in _Border.__slots__)
     )

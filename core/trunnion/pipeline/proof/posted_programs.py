@@ -151,6 +151,18 @@ def with_engagement(program: Program, process: ProcessTree) -> Program:
     return replace(program, sections=sections)
 
 
+NOTHING_CUT = Verdict(
+    outcome=Outcome.FAILED,
+    coverage=0.0,
+    reachable=0.0,
+    gouge=0.0,
+    collisions=0,
+    rapids_in_stock=0,
+    machining_time_s=0.0,
+)
+"""The verdict where an error kept anything from being planned: a part of metres that no machine takes is not looked at by the micron."""
+
+
 def prove_session(
     session: Session, context: Context, progress: Progress
 ) -> tuple[Verdict, tuple[PostedFile, ...]]:
@@ -163,8 +175,11 @@ def prove_session(
     )
     progress.at(0.05, "reading the text back")
     programs = progress.aside(lambda own: read_back(session, posted, context.shop.machines, own))
+    errors = errors_before(session)
+    if errors and all(o.suppressed for o in session.process.operations):
+        return held_back(NOTHING_CUT, errors), posted
     verdict = prove_programs(session, context, programs, progress.part(0.1, 1.0, "proof"))
-    return held_back(verdict, errors_before(session)), posted
+    return held_back(verdict, errors), posted
 
 
 def errors_of_part(session: Session) -> tuple[Finding, ...]:

@@ -152,7 +152,7 @@ def _both_sides(
 def _with_cutters(
     state: PanelPlanState, features: Sequence[Feature], stages: Sequence[Stage], progress: Progress
 ) -> list[OperationTask]:
-    """Return the tasks that have a cutter, words so that few cutters serve all; those that depend on another's cutter come last."""
+    """Return the tasks that have a cutter, chosen so that few cutters serve all; those that depend on another's cutter come last."""
     tasks: list[OperationTask] = []
     rounds = [
         [s for s in stages if s.cutter not in DEPENDENT],

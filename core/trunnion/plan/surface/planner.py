@@ -16,7 +16,7 @@ from trunnion.plan.freeform.surface_drives import space_from, surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.surface.route import CUTTER_RULES, make_surface_route
+from trunnion.plan.surface.route import CUTTER_RULES, make_surface_route, refused_process
 from trunnion.plan.surface.settings import SurfaceRouteSettings
 from trunnion.progress import Progress
 
@@ -39,9 +39,15 @@ class SurfacePlanner:
             )
 
     def route(self, job: RouteJob) -> ProcessTree:
-        """Return the process by `make_surface_route`."""
+        """Return the process by `make_surface_route`, or why the blank fits no machine."""
         first, progress = job.setups[0], job.progress
         curved = job.settings_of(SurfaceRouteSettings).consistent()
+        # Faces of a part that no machine takes are not opened: metres of them would fill the memory.
+        refused = refused_process(
+            job.recognition, job.blank, job.setups, job.shop, job.settings_of(RouteSettings)
+        )
+        if refused is not None:
+            return refused
         skin = job.context.skin(tolerance.CHORD, progress.part(0.0, 0.5))
         space = SurfaceSpace.of(job.context.part, skin, job.blank, first)
         around = job.context.around(first, space.frame, space.skin, progress)

@@ -52,6 +52,22 @@ SLENDER = 4
 """How many of the most slender cutters say what is hidden: larger ones reach no more."""
 
 
+def refused_process(
+    recognition: Recognition,
+    blank: Blank,
+    setups: Sequence[Setup],
+    shop: Shop,
+    route: RouteSettings,
+) -> ProcessTree | None:
+    """Return the process that says why nothing is planned for a blank that a machine can't take; None where all can."""
+    findings = too_large(blank, setups, shop)
+    if not findings:
+        return None
+    plan = typical_plan(shop, recognition.family, route.plan, CUTTER_RULES)
+    material = shop.material(blank.material)
+    return process_of((), findings, plan=plan, material=material, setups=setups, shop=shop)
+
+
 def make_surface_route(
     recognition: Recognition,
     blank: Blank,
@@ -70,11 +86,6 @@ def make_surface_route(
     """
     plan = typical_plan(shop, recognition.family, route.plan, CUTTER_RULES)
     material = shop.material(blank.material)
-    findings = too_large(blank, setups, shop)
-    if findings:
-        return ProcessTree(
-            plan=plan.name, material=material.name, setups=tuple(setups), findings=tuple(findings)
-        )
     state = SurfacePlanState(
         space=space,
         around=around,
