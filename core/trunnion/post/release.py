@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from trunnion import registry
-from trunnion.findings import BadCall, Refused
+from trunnion.findings import BadCall, Refused, Severity
 from trunnion.model.session import PostedFile, Session
 from trunnion.post.header import REJECTED, STAMP_LINES, Header, plan_digest
 
@@ -21,10 +21,17 @@ def release(session: Session, *, name: str = "", date: str = "") -> tuple[Posted
     """Return a proven session's texts as they may leave: stamped with the verdict, `S1.nc` or `S1.REJECTED.nc`; CL stays `cl`, stamped.
 
     `name` is the NAME of the files (default: the part's), `date` the caller's. Raises `BadCall` before a proof, `Refused` when the texts
-    are not those of the session's plan.
+    are not those of the session's plan, or when nothing is cut: with the first error that says why.
     """
-    if session.verdict is None or not session.posted:
+    if session.verdict is None:
         raise BadCall("nothing is proven yet: verify first")
+    if not session.posted:
+        errors = [f for f in session.findings() if f.severity is Severity.ERROR]
+        raise Refused(
+            f"no operation, no program: {errors[0].text}; {errors[0].remedy}"
+            if errors
+            else "no operation, no program: add one, or use what is suppressed"
+        )
     header = replace(Header.of(session, name=name, date=date), verdict=session.verdict)
     plan = plan_digest(session)
     return tuple(_stamped(posted, header, plan) for posted in session.posted)
