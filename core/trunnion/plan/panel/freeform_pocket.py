@@ -35,7 +35,7 @@ class FreeformPocket:
 
     `level` are the tags of its level floors, `curved` those of its curved ones, `sides` those of all that stands around and in it, islands'
     too. `bottom` and `top` are heights, `rim` that of its lowest rim; `mouth` is the plan area that is free just below the rim; `ribs` are
-    outlines of lower ribs beside it with their heights. `growth` is by how much its walls lean away at most, in mm a mm of height.
+    outlines of lower ribs beside it with their heights. `growth` and `hang` are by how much its walls lean away and over at most, in mm a mm of height.
     `fillet` is the smallest radius at the foot of its sides, 0 where one is sharp.
     """
 
@@ -51,6 +51,7 @@ class FreeformPocket:
     rim: float
     mouth: Region
     growth: float
+    hang: float
     fillet: float
 
     @staticmethod
@@ -91,7 +92,8 @@ class FreeformPocket:
             top=top,
             rim=rim,
             mouth=band.boundary.intersect(band.wanted.offset(AROUND)),
-            growth=_growth(curved, feature.with_role("outer_convergence", "corner")),
+            growth=_growth(curved, feature.with_role("outer_convergence", "corner"), 1.0),
+            hang=_growth(curved, feature.with_role("inner_convergence", "corner"), -1.0),
             fillet=min(floor_fillet(f) for f in (feature, *islands)),
         )
 
@@ -104,8 +106,9 @@ class FreeformPocket:
         )
 
     def holds(self, samples: AreaSamples) -> AreaSamples:
-        """Return the samples that are the pocket's own: faces may run on into its neighbours."""
-        return samples.of(self.limit(self.top).contains(samples.point[:, :2]))
+        """Return the samples that are the pocket's own, what hangs over among them: faces may run on into its neighbours."""
+        area = self.limit(self.top).offset(self.hang * (self.top - self.bottom))
+        return samples.of(area.contains(samples.point[:, :2]))
 
     def layer_area(self) -> LayerArea:
         """Return where the pocket is roughed by layers."""
@@ -145,11 +148,11 @@ class FreeformPocket:
         return floors, tuple(levels)
 
 
-def _growth(curved: SurfaceSpace, tags: tuple[int, ...]) -> float:
-    """Return by how much faces lean away at most, in mm a mm of height."""
+def _growth(curved: SurfaceSpace, tags: tuple[int, ...], away: float) -> float:
+    """Return by how much faces lean away (1) or over (-1) at most, in mm a mm of height."""
     skin = curved.skin
     normals = skin.normals[np.unique(skin.triangles[skin.of(tags)])]
     if not len(normals):
         return 0.0
-    rise = math.pi / 2.0 - np.arcsin(np.clip(normals[:, 2], 0.0, 1.0))
+    rise = math.pi / 2.0 - np.arcsin(np.clip(away * normals[:, 2], 0.0, 1.0))
     return float(1.0 / math.tan(max(float(rise.min()), FLATTEST)))

@@ -143,7 +143,6 @@ def _rest_layer_tasks(
             missable=SHARP,
             spare=1.0,
             near=NEAR_WALL,
-            cusps=True,
         )
         is_through = fits_through(replace(requirement, radius=0.0), before, catalogue(state, stage))
         if is_through and not 0.0 < corner < before.radius:
@@ -261,7 +260,6 @@ def _floor_tasks(
             wanted=areas[-1][1],
             corner_radius=pocket.fillet,
             missable=SHARP,
-            cusps=True,
             near=NEAR_FLOOR,
             others=tuple(areas[:-1]),
         )

@@ -46,7 +46,7 @@ class PanelPlanner:
         """Return the process by `make_route`."""
 
         def curved(setup: Setup) -> SurfaceSpace:
-            skin = job.context.skin(tolerance.CHORD, job.progress)
+            skin = job.context.skin(tolerance.SKIN_CHORD, job.progress)
             return SurfaceSpace.of(job.context.part, skin, job.blank, setup)
 
         return make_route(

@@ -423,7 +423,9 @@ def _top_areas(
         wanted = wanted.union(space.part.face_outline(space.setup.frame, tag))
     pocket = parent_of(feature, state.recognition)
     if feature.kind != "island" or (pocket is not None and space.is_freeform(pocket)):
-        return touching(space.free_near(z + tolerance.OFF_PLANE, wanted), wanted), wanted
+        free = touching(space.free_near(z + tolerance.OFF_PLANE, wanted), wanted)
+        # Under a wall that leans over its end no cutter gets to a top.
+        return free, wanted.minus(space.hanging_over(z + tolerance.OFF_PLANE, wanted))
     over = (
         [b for b in state.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW]
         if pocket

@@ -338,6 +338,7 @@ def _rib_top(operation: Operation, feature: Feature, space: SetupSpace) -> Plane
     wanted = space.part.face_outline(frame, tags[0])
     for tag in tags[1:]:
         wanted = wanted.union(space.part.face_outline(frame, tag))
+    wanted = wanted.minus(space.hanging_over(z + tolerance.OFF_PLANE, wanted))
     boundary = _free_over(z, wanted, space)
     walls = tuple(
         WallGuide(curve=run, top=space.top, bottom=z, fillet=0.0, faces=())
