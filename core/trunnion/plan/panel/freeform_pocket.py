@@ -35,8 +35,8 @@ class FreeformPocket:
 
     `level` are the tags of its level floors, `curved` those of its curved ones, `sides` those of all that stands around and in it, islands'
     too. `bottom` and `top` are heights, `rim` that of its lowest rim; `mouth` is the plan area that is free just below the rim; `ribs` are
-    outlines of lower ribs beside it with their heights. `growth` and `hang` are by how much its walls lean away and over at most, in mm a mm of height.
-    `fillet` is the smallest radius at the foot of its sides, 0 where one is sharp.
+    outlines of lower ribs beside it with their heights. `growth` and `hang` are by how much its walls lean away and
+    over at most, in mm a mm of height. `fillet` is the smallest radius at the foot of its sides, 0 where one is sharp.
     """
 
     feature: Feature

@@ -23,7 +23,7 @@ from trunnion.plan.freeform.cutters.choice import (
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
-from trunnion.plan.freeform.reach import AreaSamples, samples_on
+from trunnion.plan.freeform.reach import AreaSamples, leans, samples_on
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.panel.freeform_pocket import FreeformPocket
 from trunnion.plan.panel.settings import LeaningSettings
@@ -53,6 +53,8 @@ LAP = 5.0
 """degrees by which waterlines and passes of constant scallop go on past the slope where they meet."""
 SEEN = 0.02
 """Share of a face that a cutter reaches, below which nothing is planned for it."""
+SAMPLES = 600
+"""Positions on the faces of a pocket that its cutters are chosen by: one stands for less than what is left to no further cutter."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
 WORTH_NAMING = 1.0
@@ -460,8 +462,13 @@ def _cutters(
     floors the largest ball."""
     key = (pocket.feature.id, what)
     if key not in known.cutters:
-        samples = pocket.holds(samples_on(known.curved.skin, faces))
+        samples = pocket.holds(samples_on(known.curved.skin, faces, SAMPLES))
         sides = what == "sides"
+        if pocket.curved:
+            # Over curved floors the slope parts what waterlines finish from what passes of constant scallop do.
+            lean, limit = leans(samples), known.settings.steep
+            steep = lean > math.radians(limit - LAP)
+            samples = samples.of(steep if sides else lean < math.radians(limit + LAP))
         tools = _side_cutters(state, pocket) if sides else _balls(state)
         known.cutters[key] = (
             samples,

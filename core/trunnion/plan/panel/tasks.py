@@ -95,8 +95,8 @@ class OperationTask:
 @dataclass(slots=True)
 class PanelPlanState:
     """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way, `choices`
-    are a session's settings by full key, `holes` what the stages on holes have found out. `curved` returns the part's skin as the setup sees it, None where nobody has it;
-    `freeform` is what the stages on leaning walls and curved floors have found out."""
+    are a session's settings by full key, `holes` what the stages on holes have found out. `curved` returns the part's
+    skin as the setup sees it, None where nobody has it; `freeform` is what the stages on leaning walls and curved floors have found out."""
 
     space: SetupSpace
     recognition: Recognition

@@ -128,14 +128,14 @@ class SetupSpace:
     def material_over(self, z: float, near: Region) -> Region:
         """Return the part's material at a height, with all that hangs over it near a region: what an upright cutter must stay out of.
 
-        A section through a recess in a wall shows free space that no upright cutter gets into; the section just over the recess closes it. A
-        wall that leans over is widest at its upper edges.
+        A section through a recess in a wall shows free space that no upright cutter gets into; the section just over the recess closes it.
+        A wall that leans over is widest at its upper edges.
         """
         material = self.section(z)
         return material.union(self.hanging_over(z, near)) if near else material
 
     def hanging_over(self, z: float, near: Region) -> Region:
-        """Return the part's material in the sections above a height that show what hangs over it near a region; empty where nothing does."""
+        """Return the part's material in the sections above a height that show what hangs over it near a region, if anything."""
         low, high = near.box()
         over = [
             height

@@ -68,8 +68,8 @@ def cutter_for(
     progress: Progress,
     size: Callable[[Tool], float] = by_diameter,
 ) -> AreaCutters:
-    """Return the largest cutter, by a size of cutters, that reaches at least a share of what any one reaches of samples, the shortest of its size; or the one
-    that is `wanted`.
+    """Return the largest cutter, by a size of cutters, that reaches at least a share of what any one reaches of samples, the shortest of
+    its size; or the one that is `wanted`.
 
     What it misses goes to the largest smaller one that reaches nearly all any does of that.
     """

@@ -76,8 +76,8 @@ def parted_near(
 
 
 def parted_within(skin: Skin, tags: tuple[int, ...], area: Region) -> tuple[Skin, tuple[int, ...]]:
-    """Return the skin with what of faces lies within a plan area given tags of its own where a face runs out of it, and the tags of all that
-    is within."""
+    """Return the skin with what of faces lies within a plan area given tags of its own where a face runs out of it, and the tags of
+    all that is within."""
     rows = np.flatnonzero(skin.of(tags))
     outside = ~area.contains(skin.points[skin.triangles[rows]].reshape(-1, 3)[:, :2], -ACROSS)
     crossing = np.unique(skin.face[rows][outside.reshape(-1, 3).any(axis=1)])

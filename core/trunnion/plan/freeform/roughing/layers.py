@@ -44,7 +44,7 @@ RIM = 2.0
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class LayerArea:
-    """Where a pocket is roughed by layers: `low` and `high` (3,) are the corners of the box that is mapped, `level` the heights of the level
+    """Where a pocket is roughed by layers: `low` and `high` (3,) are the corners of the box that is mapped, `level` the heights of level
     faces that end layers, `within` returns the plan area that a layer with its bottom at a height keeps in."""
 
     low: Floats
