@@ -55,6 +55,8 @@ SEEN = 0.02
 """Share of a face that a cutter reaches, below which nothing is planned for it."""
 SAMPLES = 600
 """Positions on the faces of a pocket that its cutters are chosen by: one stands for less than what is left to no further cutter."""
+HANGING = 2.0
+"""Times what layers leave: beside walls that lean over it stands as high as the pocket is deep, thicker in corners."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
 WORTH_NAMING = 1.0
@@ -203,7 +205,8 @@ def _layers(
         (),
         {
             ALLOWANCE: state.settings.floor_allowance,
-            BOTTOM: pocket.bottom,
+            # Lower than the lowest floor's allowance only holes in it are free.
+            BOTTOM: pocket.bottom + (0.0 if pocket.curved else state.settings.floor_allowance),
             CELL: settings.cell,
         },
         engagement,
@@ -307,6 +310,9 @@ def _side_tasks(
             continue
         left = pocket.layer_area().remaining(settings.cell, state.settings.floor_allowance)
         left += settings.step
+        if pocket.hang > 0.0:
+            # What stays at a wall that leans over is nowhere finished: necks keep off more than elsewhere.
+            left *= HANGING
         shallowest = max(settings.steep - LAP, FOOT) if pocket.curved else FOOT
         for tool, reached, earlier in _steps(chosen):
             choices: dict[str, Value] = {
