@@ -23,7 +23,7 @@ from trunnion.plan.prismatic.drive import DriveLevel, Floor
 from trunnion.plan.prismatic.lean import SIDES, curved_floors, level_floors
 from trunnion.plan.prismatic.regions import SetupSpace, floor_fillet, number
 
-ROOM = 1.0
+MARGIN = 1.0
 """mm that the map of a pocket goes on past its rim."""
 FLATTEST = math.radians(30.0)
 """Walls rise by at least this much from level: what rises less grows a pocket's rim by no more."""
@@ -117,8 +117,8 @@ class FreeformPocket:
         heights = [float(self.space.centre(t)[2]) for t in self.level]
         heights += [*self.tops, *(height for height, _ in self.ribs)]
         return LayerArea(
-            low=np.array([*(low - ROOM), z[0]]),
-            high=np.array([*(high + ROOM), z[1]]),
+            low=np.array([*(low - MARGIN), z[0]]),
+            high=np.array([*(high + MARGIN), z[1]]),
             level=tuple(sorted(set(heights), reverse=True)),
             within=self.limit,
         )

@@ -302,9 +302,9 @@ def _side_tasks(
     found = []
     for known, pocket in _pockets(state, stage, features):
         settings = known.settings
-        samples, chosen = _cutters(state, known, pocket, "sides", pocket.sides)
-        _tell_unreached(state, pocket, samples, chosen)
-        if chosen.tool is None:
+        samples, cutters = _cutters(state, known, pocket, "sides", pocket.sides)
+        _report_unreached(state, pocket, samples, cutters)
+        if cutters.tool is None:
             if len(samples):
                 state.findings.append(_no_cutter(pocket, stage, pocket.sides))
             continue
@@ -314,7 +314,7 @@ def _side_tasks(
             # What stays at a wall that leans over is nowhere finished: necks keep off more than elsewhere.
             left *= HANGING
         shallowest = max(settings.steep - LAP, FOOT) if pocket.curved else FOOT
-        for tool, reached, earlier in _steps(chosen):
+        for tool, reached, earlier in _steps(cutters):
             choices: dict[str, Value] = {
                 SCALLOP: settings.scallop,
                 ALLOWANCE: 0.0,
@@ -358,8 +358,8 @@ def _on_curved_floors(
         if not pocket.curved or (semi and settings.semi_allowance <= 0.0):
             continue
         faces = (*pocket.curved, *_feet(state, pocket))
-        samples, chosen = _cutters(state, known, pocket, "floor", faces)
-        if chosen.tool is None:
+        samples, cutters = _cutters(state, known, pocket, "floor", faces)
+        if cutters.tool is None:
             if not semi:
                 state.findings.append(_no_cutter(pocket, stage, faces))
             continue
@@ -367,7 +367,7 @@ def _on_curved_floors(
         left += 0.5 * _layer(pocket, settings)
         height = settings.semi_scallop if semi else settings.scallop
         is_after_layers = semi or settings.semi_allowance <= 0.0
-        for tool, reached, earlier in _steps(chosen):
+        for tool, reached, earlier in _steps(cutters):
             choices: dict[str, Value] = {
                 SCALLOP: height,
                 ALLOWANCE: settings.semi_allowance if semi else 0.0,
@@ -403,12 +403,12 @@ def _feet(state: PanelPlanState, pocket: FreeformPocket) -> tuple[int, ...]:
     return tuple(sorted(own & beside & fillets))
 
 
-def _steps(chosen: AreaCutters) -> list[tuple[Tool, Bools, Tool | None]]:
+def _steps(cutters: AreaCutters) -> list[tuple[Tool, Bools, Tool | None]]:
     """Return the cutters of an area in order, each with the samples it is for and the one before it."""
-    if chosen.tool is None:
+    if cutters.tool is None:
         return []
-    first: list[tuple[Tool, Bools, Tool | None]] = [(chosen.tool, chosen.reached, None)]
-    return first + ([(chosen.rest, chosen.missed, chosen.tool)] if chosen.rest else [])
+    first: list[tuple[Tool, Bools, Tool | None]] = [(cutters.tool, cutters.reached, None)]
+    return first + ([(cutters.rest, cutters.missed, cutters.tool)] if cutters.rest else [])
 
 
 def _after(strategy: str, earlier: Tool | None) -> dict[str, Value]:
@@ -513,13 +513,13 @@ def _side_cutters(state: PanelPlanState, pocket: FreeformPocket) -> list[Tool]:
     return list(found.values())
 
 
-def _tell_unreached(
-    state: PanelPlanState, pocket: FreeformPocket, samples: AreaSamples, chosen: AreaCutters
+def _report_unreached(
+    state: PanelPlanState, pocket: FreeformPocket, samples: AreaSamples, cutters: AreaCutters
 ) -> None:
     """Tell which sides no upright cutter comes to: what leans over, and what lies under it."""
-    seen = {int(t): chosen.reachable[samples.face == t] for t in np.unique(samples.face)}
+    seen = {int(t): cutters.reachable[samples.face == t] for t in np.unique(samples.face)}
     lost = [t for t, rows in seen.items() if not rows.all()]
-    area = samples.area * float((~chosen.reachable).sum())
+    area = samples.area * float((~cutters.reachable).sum())
     if area < WORTH_NAMING or not lost:
         return
     state.findings.append(

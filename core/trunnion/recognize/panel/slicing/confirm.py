@@ -98,7 +98,7 @@ def confirm(view: PanelSide, pocket: Pocket) -> ConfirmedPocket:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PocketRemark:
+class PocketFinding:
     """What keeps a vertical strategy from a pocket: finding code, reason, remedy and the face rows."""
 
     code: str
@@ -107,7 +107,7 @@ class PocketRemark:
     rows: tuple[int, ...]
 
 
-def refusal(view: PanelSide, confirmed: ConfirmedPocket) -> PocketRemark | None:
+def refusal(view: PanelSide, confirmed: ConfirmedPocket) -> PocketFinding | None:
     """Return why nothing is planned for a pocket, or None: slopes beside it belong to no feature, material stands over it, or it is reached
     from below."""
     pocket, kind = confirmed.pocket, view.classes.kind
@@ -115,14 +115,14 @@ def refusal(view: PanelSide, confirmed: ConfirmedPocket) -> PocketRemark | None:
         return _leaning(view, pocket)
     hangs = any(kind[f] in (FaceClass.INNER, FaceClass.STEEP) for f in _all_sides(pocket))
     if confirmed.covered > COVER and not hangs:
-        return PocketRemark(
+        return PocketFinding(
             code="panel.overhang",
             why=f"material stands over {confirmed.covered:.0%} of it",
             remedy="machine it from another side, or with a T-slot cutter",
             rows=pocket.floors,
         )
     if view.below:
-        return PocketRemark(
+        return PocketFinding(
             code="panel.below",
             why="it is reached from below",
             remedy="add a setup for the other side",
@@ -131,7 +131,7 @@ def refusal(view: PanelSide, confirmed: ConfirmedPocket) -> PocketRemark | None:
     return None
 
 
-def shape_remarks(view: PanelSide, confirmed: ConfirmedPocket) -> tuple[PocketRemark, ...]:
+def shape_remarks(view: PanelSide, confirmed: ConfirmedPocket) -> tuple[PocketFinding, ...]:
     """Return what a vertical strategy alone would gouge or leave of a pocket: leaning walls, a curved floor."""
     pocket, kind = confirmed.pocket, view.classes.kind
     found = []
@@ -139,7 +139,7 @@ def shape_remarks(view: PanelSide, confirmed: ConfirmedPocket) -> tuple[PocketRe
         found.append(_leaning(view, pocket))
     if _curved(view, pocket):
         found.append(
-            PocketRemark(
+            PocketFinding(
                 code="panel.curved-floor",
                 why="its floor is curved",
                 remedy=SHAPE_REMEDY,
@@ -149,13 +149,13 @@ def shape_remarks(view: PanelSide, confirmed: ConfirmedPocket) -> tuple[PocketRe
     return tuple(found)
 
 
-def _leaning(view: PanelSide, pocket: Pocket) -> PocketRemark:
+def _leaning(view: PanelSide, pocket: Pocket) -> PocketFinding:
     rows = (
         *(f for f in _all_sides(pocket) if view.classes.kind[f] is not FaceClass.VERTICAL),
         *pocket.slopes,
     )
     lean = max((abs(float(view.classes.lean[f])) for f in rows), default=0.0)
-    return PocketRemark(
+    return PocketFinding(
         code="panel.leaning-wall",
         why=f"its walls lean by up to {lean:.1f} degrees",
         remedy=LEANING_REMEDY if pocket.slopes else SHAPE_REMEDY,
