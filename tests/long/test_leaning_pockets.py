@@ -12,6 +12,7 @@ import samples
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import Engine
+from trunnion.tolerance import FINISH_GOUGE
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(900)]
 
@@ -31,7 +32,7 @@ def programmed(shape: Any) -> Session:
 def test_open_walls_and_curved_floors_are_finished(shape: Any) -> None:
     verdict = programmed(shape()).verdict
     assert verdict is not None and verdict.outcome in (Outcome.PASSED, Outcome.REMARKS)
-    assert verdict.reachable >= 0.99 and verdict.gouge == 0.0
+    assert verdict.reachable >= 0.99 and verdict.gouge <= FINISH_GOUGE
     assert (verdict.collisions, verdict.rapids_in_stock) == (0, 0)
 
 
@@ -39,7 +40,8 @@ def test_a_wall_that_leans_over_is_left_whole_and_the_rest_is_finished() -> None
     session = programmed(leaning_pockets.mixed_block())
     verdict = session.verdict
     assert verdict is not None and verdict.releases
-    assert verdict.reachable >= 0.99 and verdict.gouge == 0.0 and verdict.collisions == 0
+    assert verdict.reachable >= 0.99 and verdict.collisions == 0
+    assert verdict.gouge <= FINISH_GOUGE
     assert session.recognition is not None
     (hanging,) = session.recognition.feature("pocket-01").with_role("inner_convergence")
     assert f"face {hanging}" in {
@@ -53,4 +55,4 @@ def test_a_wall_that_leans_over_is_left_whole_and_the_rest_is_finished() -> None
 def test_random_leans_depths_and_radii_are_finished_without_a_gouge(seed: int) -> None:
     verdict = programmed(leaning_pockets.random_block(seed)).verdict
     assert verdict is not None and verdict.releases, [str(f) for f in verdict.findings]
-    assert verdict.reachable >= 0.99 and verdict.gouge <= 0.02 and verdict.collisions == 0
+    assert verdict.reachable >= 0.99 and verdict.gouge <= FINISH_GOUGE and verdict.collisions == 0
