@@ -12,7 +12,7 @@ import samples
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import Engine
-from trunnion.tolerance import FINISH_GOUGE
+from trunnion.tolerance import CONTACT_BOUND, FINISH_GOUGE
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(900)]
 
@@ -48,7 +48,8 @@ def test_a_wall_that_leans_over_is_left_whole_and_the_rest_is_finished() -> None
         w for f in session.findings() if f.code == "route.not-planned" for w in f.where
     }
     (proof,) = [f for f in verdict.faces if f.face == hanging]
-    assert proof.gouge == 0.0 and not proof.planned
+    # What the contact engine can tell from nothing.
+    assert proof.gouge <= CONTACT_BOUND and not proof.planned
 
 
 @pytest.mark.parametrize("seed", SEEDS)
