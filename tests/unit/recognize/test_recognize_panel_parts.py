@@ -151,9 +151,11 @@ def test_what_is_not_handled_yet_is_a_finding(name: str, code: str) -> None:
     assert code in {f.code for f in part_of(name)[1].findings}
 
 
-def test_every_pocket_with_a_leaning_wall_is_refused() -> None:
-    for pocket in part_of("B2.step")[1].of_kind("pocket"):
-        assert "lean" in str(pocket.attributes["refused"])
+def test_every_pocket_with_a_leaning_wall_is_told_of_and_none_is_refused() -> None:
+    found = part_of("B2.step")[1]
+    told = {w for f in found.findings if f.code == "panel.leaning-wall" for w in f.where}
+    assert {p.id for p in found.of_kind("pocket")} <= told
+    assert not [p.id for p in found.of_kind("pocket") if "refused" in p.attributes]
 
 
 def test_the_sizes_of_the_first_panel_are_the_truths() -> None:

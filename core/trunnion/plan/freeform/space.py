@@ -19,6 +19,7 @@ from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.finishing.partition import parted_within
 from trunnion.plan.freeform.finishing.rest import remaining_of, remaining_upright, without_met
 from trunnion.plan.freeform.fixtures import (
     KeepOutArea,
@@ -117,11 +118,14 @@ class SurfaceSpace:
         remaining_stock: RemainingStockQuery | None = None,
         upright: Tool | None = None,
         progress: Progress = NO_PROGRESS,
+        within: Region | None = None,
     ) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by.
 
         `earlier` is the cutter that finished them before, `query_for` returns the clearance query of a tool, `remaining_stock` is the
         material that stands, `upright` the cutter that finished what an upright one comes to.
+
+        With a plan area only what is `within` it is finished of faces that run out of it.
 
         Unless the tool leans, what it can't come to without its shank or holder meeting the part, or any of it a fixture of the setup,
         is none of its area; neither is what it can't come to with its tip outside the boxes that the operation avoids.
@@ -131,6 +135,8 @@ class SurfaceSpace:
         )
         thickness = LEFTOVER * operation.data.depth
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
+        if within is not None:
+            skin, faces = parted_within(skin, faces, within)
         if earlier is not None and not needs.finds_rest:
             skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress)
         if upright is not None:
@@ -171,6 +177,7 @@ class SurfaceSpace:
             needs.leans,
             *((boxes,) if boxes else ()),
             *((extension,) if extension else ()),
+            *((within,) if within is not None else ()),
         )
         return SurfaceDrive(
             feature=operation.feature,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from trunnion import tolerance
+from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool, rotating
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
@@ -30,14 +31,21 @@ def space_from(
 
 
 def surface_driven(
-    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+    operation: Operation,
+    needs: DriveNeeds,
+    scene: Scene,
+    progress: Progress,
+    within: Region | None = None,
 ) -> OperationDrive:
-    """Return the surface drive of an operation, with the cutter that finished its faces before where the operation names one."""
+    """Return the surface drive of an operation, with the cutter that finished its faces before where the operation names one; of faces that
+    run out of a plan area, only what is `within` it."""
     space = space_from(operation.direction, tolerance.SKIN_CHORD, scene, progress)
     around = scene.context.around(scene.setup, space.frame, space.skin, progress)
     earlier, upright = (_named(operation, key, scene) for key in (EARLIER, UPRIGHT_EARLIER))
     remaining_stock = scene.remaining_stock(space.frame) if needs.leans else None
-    drive = space.drive_of(operation, needs, earlier, around, remaining_stock, upright, progress)
+    drive = space.drive_of(
+        operation, needs, earlier, around, remaining_stock, upright, progress, within
+    )
     return OperationDrive(
         setup=space.setup,
         drive=drive,

@@ -40,7 +40,7 @@ def best_fit(state: PanelPlanState, task: OperationTask) -> tuple[OperationTask,
 def _ladder(state: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
     """Return what may be requested instead, best first, each with what becomes of it in words."""
     requirement, rule = task.requirement, task.stage.cutter
-    if rule == "rough":
+    if rule in ("rough", "layers"):
         tight = replace(requirement, spare=1.0)
         return [
             (tight, "it is roughed by a cutter that has little room to turn"),

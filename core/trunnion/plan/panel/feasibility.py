@@ -2,32 +2,29 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
-from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, warning
 from trunnion.model.feature import Feature, Recognition
 from trunnion.plan.panel.tasks import OperationTask
+from trunnion.plan.prismatic.lean import ALLOWED_LEAN, POCKETS, steepest_lean
 from trunnion.plan.prismatic.regions import SectionSource, parent_of
 from trunnion.plan.tool_choice import Candidates
 from trunnion.shop import Stage
 from trunnion.units import trimmed
 
-POCKETS = ("pocket", "open_pocket")
-ALLOWED_LEAN = math.degrees(tolerance.ANGLE)
-
 
 def plannable(
-    recognition: Recognition, stages: Sequence[Stage]
+    recognition: Recognition, stages: Sequence[Stage], *, freeform: bool = False
 ) -> tuple[list[Feature], dict[str, str]]:
-    """Return the features that stages may plan, and for each other one (datum faces apart) why it is left."""
+    """Return the features that stages may plan, and for each other one (datum faces apart) why it is left; `freeform` says whether pockets
+    may have leaning walls and curved floors."""
     known = {kind for stage in stages for kind in stage.on}
     planned, refusals = [], {}
     for feature in recognition:
         if feature.kind == "datum":
             continue
-        reason = _refusal(feature, known)
+        reason = _refusal(feature, known, freeform=freeform)
         if reason:
             refusals[feature.id] = reason
         else:
@@ -41,18 +38,19 @@ def plannable(
     return [f for f in planned if f.id not in refusals], refusals
 
 
-def _refusal(feature: Feature, known: set[str]) -> str:
+def _refusal(feature: Feature, known: set[str], *, freeform: bool) -> str:
     refused = feature.attributes.get("refused", feature.sizes.get("refused"))
     if refused:
         return refused if isinstance(refused, str) else "it was refused"
     if feature.kind not in known:
         return f"the typical plan has no operation for a {feature.kind.replace('_', ' ')}"
+    if freeform and feature.kind in (*POCKETS, "island"):
+        return ""
     if feature.kind in POCKETS and (
         feature.sizes.get("curved_floor") or "floor_z_max" in feature.sizes
     ):
         return "a curved floor, which a plane operation would gouge or leave"
-    leans = feature.sizes.get("leans", ())
-    steepest = max((abs(v) for v in leans), default=0.0) if isinstance(leans, tuple) else 0.0
+    steepest = steepest_lean(feature)
     if steepest > ALLOWED_LEAN:
         return f"walls that lean by {trimmed(steepest, 2)} degrees, which a vertical cutter would gouge or leave"
     return ""

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from trunnion import tolerance
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.setup import Setup
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
+from trunnion.plan.panel.freeform_drives import freeform_drive, pocket_of
 from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.rules import TASK_MAKERS
+from trunnion.plan.panel.settings import LeaningSettings
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
 from trunnion.plan.prismatic.regions import SetupSpace
@@ -32,6 +37,7 @@ class PanelPlanner:
         SidesSettings,
         HoleSettings,
         DrillSettings,
+        LeaningSettings,
     )
     cutter_rules: tuple[str, ...] = tuple(TASK_MAKERS)
 
@@ -40,6 +46,11 @@ class PanelPlanner:
 
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_route`."""
+
+        def curved(setup: Setup) -> SurfaceSpace:
+            skin = job.context.skin(tolerance.SKIN_CHORD, job.progress)
+            return SurfaceSpace.of(job.context.part, skin, job.blank, setup)
+
         return make_route(
             job.recognition,
             job.sizes,
@@ -50,6 +61,7 @@ class PanelPlanner:
             job.settings_of(RouteSettings),
             job.progress,
             choices=job.choices,
+            curved=curved,
         )
 
     def drive(
@@ -57,7 +69,7 @@ class PanelPlanner:
     ) -> OperationDrive:
         """Return the drive that an operation's strategy needs."""
         return driven_by(
-            {PlaneDrive: _plane_driven, SurfaceDrive: surface_driven, HoleDrive: holes_driven},
+            {PlaneDrive: _plane_driven, SurfaceDrive: _surface_driven, HoleDrive: holes_driven},
             self,
             operation,
             needs,
@@ -69,9 +81,25 @@ class PanelPlanner:
 def _plane_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
 ) -> OperationDrive:
-    space = scene.once(
+    space = _space(scene)
+    pocket = pocket_of(operation, space, scene, progress)
+    if pocket is not None:
+        drive = freeform_drive(operation, pocket, scene, progress)
+    else:
+        drive = drive_of(operation, scene.process, space)
+    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)
+
+
+def _surface_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    pocket = pocket_of(operation, _space(scene), scene, progress)
+    within = pocket.limit(pocket.top) if pocket is not None else None
+    return surface_driven(operation, needs, scene, progress, within)
+
+
+def _space(scene: Scene) -> SetupSpace:
+    return scene.once(
         "sections",
         lambda: SetupSpace.of(scene.context.part, scene.recognition, scene.blank, scene.setup),
     )
-    drive = drive_of(operation, scene.process, space)
-    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from trunnion import tolerance
 from trunnion.model.blank import Blank
@@ -23,6 +24,7 @@ from trunnion.plan.cutting.milling import (
 from trunnion.plan.cutting.power import DRILL
 from trunnion.plan.feasibility import too_large
 from trunnion.plan.flip import turned
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
 from trunnion.plan.panel.fallbacks import (
     behind_rest_roughing,
@@ -36,11 +38,13 @@ from trunnion.plan.panel.feasibility import (
     plannable,
     without_lonely_ribs,
 )
+from trunnion.plan.panel.freeform_tasks import NEEDED
 from trunnion.plan.panel.rules import TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.panel.sides import shared_out
 from trunnion.plan.panel.tasks import (
     DEPENDENT,
+    REST,
     OperationTask,
     PanelPlanState,
     floor_distance,
@@ -83,6 +87,7 @@ def make_route(
     progress: Progress,
     *,
     choices: Mapping[str, Value] | None = None,
+    curved: Callable[[Setup], SurfaceSpace] | None = None,
 ) -> ProcessTree:
     """Return the process: operations in cutting order with tools numbered in the order of use, and findings on what is not planned.
 
@@ -90,6 +95,7 @@ def make_route(
     (`route.not-planned`); their material stays and the proof counts it. A cutter that does not exist is an error (`route.no-cutter`), so
     is a blank that the machine can't take (`route.travel`; nothing is planned then). The process has the setups that cut anything: where
     only one is given, the part is turned over for what that one can't reach. `choices` are a session's settings by full key.
+    `curved` returns the part's skin as a setup sees it: without it leaning walls and curved floors are not planned.
     """
     plan = typical_plan(shop, recognition.family, settings.plan, tuple(TASK_MAKERS))
     material = shop.material(blank.material)
@@ -100,7 +106,10 @@ def make_route(
         )
     progress.at(0.0, "what is to be cut")
     near = adjacent(recognition, part)
-    planned, refusals = without_lonely_ribs(*plannable(recognition, plan.stages), recognition, near)
+    freeform = curved is not None and {s.cutter for s in plan.stages} >= NEEDED
+    planned, refusals = without_lonely_ribs(
+        *plannable(recognition, plan.stages, freeform=freeform), recognition, near
+    )
     findings = not_planned(refusals, recognition)
     words = choices or {}
     states = [
@@ -114,6 +123,7 @@ def make_route(
             adjacent=near,
             choices=words,
             progress=progress,
+            curved=partial(curved, setup) if curved is not None and freeform else None,
         )
         for setup in _both_sides(setups, blank, shop, words)
     ]
@@ -174,7 +184,7 @@ def _with_cutters(
             if found.tools:
                 fits[task.id] = found.tools
                 served.append(task)
-            elif task.stage.cutter != "rest":
+            elif task.stage.cutter not in REST:
                 state.findings.append(no_cutter(task, found))
         state.tools |= covered_by_few(fits, [*state.loaded, *state.tools.values()])
         tasks += served
@@ -240,6 +250,8 @@ def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]
         if stage.finish
         else {WALL_ALLOWANCE: settings.wall_allowance, FLOOR_ALLOWANCE: settings.floor_allowance}
     )
+    if task.choices is not None:
+        choices = dict(task.choices)
     if stage.kind == "floor":
         choices["plane.floor.wall_distance"] = floor_distance(settings)
     if task.half:
@@ -286,6 +298,8 @@ def _engagement(
     state: PanelPlanState, task: OperationTask, tool: Tool, cutting: CuttingSettings
 ) -> tuple[float, float]:
     """Return depth ap and width ae: roughing by material, even layers; finishing takes the allowance in steps that the flutes bear."""
+    if task.engagement is not None:
+        return task.engagement(tool)
     rough_depth = _even(task.height, roughing_depth(tool, state.material, cutting))
     rough_width = roughing_width(tool, state.material, cutting)
     kind, allowance = task.stage.kind, state.settings.wall_allowance

@@ -16,6 +16,7 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.drive import profile_bottom
 from trunnion.plan.prismatic.regions import (
     Band,
@@ -56,7 +57,10 @@ SHARP = 0.02
 FOOT_RING = 0.5
 """mm around an island that the cutter of its foot has to get to, all round."""
 
-DEPENDENT = ("rest", "corner", "foot")
+REST = ("rest", "rest_layers")
+"""Rules for the cutters of rest roughing: without one what is left stays to finishing."""
+
+DEPENDENT = ("rest", "rest_layers", "corner", "foot")
 """Rules for cutters that depend on the cutter of another stage."""
 
 
@@ -66,6 +70,8 @@ class OperationTask:
 
     Of equal holes one task serves several: `others` are the further features, `found` the tools that fit them all, and `why` says so.
     `half`: it cuts the nearer half, the rest is cut from the other side.
+    `choices` are the operation's own where the route's allowances are none of its business, `engagement` returns depth and width of cut
+    (mm) with a cutter where its kind does not say them.
     """
 
     id: str
@@ -80,6 +86,8 @@ class OperationTask:
     found: Candidates | None = None
     why: str = ""
     half: bool = False
+    choices: Mapping[str, Value] | None = None
+    engagement: Callable[[Tool], tuple[float, float]] | None = None
 
     @property
     def all_features(self) -> tuple[str, ...]:
@@ -91,7 +99,9 @@ class OperationTask:
 class PanelPlanState:
     """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way, `choices`
     are a session's settings by full key, `holes` what the stages on holes have found out. Ids of features that two setups share: `halved`
-    of those cut half from here and half from the other side, `both_ends` of holes that both widen, `bored` of those bored in the other."""
+    of those cut half from here and half from the other side, `both_ends` of holes that both widen, `bored` of those bored in the other.
+    `curved` returns the part's skin as the setup sees it, None where nobody has it; `freeform` is what the stages on leaning walls and
+    curved floors have found out."""
 
     space: SetupSpace
     recognition: Recognition
@@ -109,6 +119,8 @@ class PanelPlanState:
     halved: set[str] = field(default_factory=set)
     both_ends: set[str] = field(default_factory=set)
     bored: set[str] = field(default_factory=set)
+    curved: Callable[[], SurfaceSpace] | None = None
+    freeform: Any = None
     progress: Progress = NO_PROGRESS
 
     def task_id(self, stage: Stage, feature: Feature) -> str:
@@ -178,7 +190,7 @@ def _pocket_tasks(
     """Return the tasks for the pockets of a stage; a pocket without free space over its floor is told of once and left out."""
     found = []
     for feature in state.progress.each(features):
-        if feature.kind not in stage.on:
+        if feature.kind not in stage.on or state.space.is_freeform(feature):
             continue
         if feature.id not in state.bands:
             try:
@@ -423,9 +435,11 @@ def _top_areas(
     space, wanted = state.space, EMPTY_REGION
     for tag in tops:
         wanted = wanted.union(space.part.face_outline(space.setup.frame, tag))
-    if feature.kind != "island":
-        return touching(space.free_near(z + tolerance.OFF_PLANE, wanted), wanted), wanted
     pocket = parent_of(feature, state.recognition)
+    if feature.kind != "island" or (pocket is not None and space.is_freeform(pocket)):
+        free = touching(space.free_near(z + tolerance.OFF_PLANE, wanted), wanted)
+        # Under a wall that leans over its end no cutter gets to a top.
+        return free, wanted.minus(space.hanging_over(z + tolerance.OFF_PLANE, wanted))
     over = (
         [b for b in state.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW]
         if pocket

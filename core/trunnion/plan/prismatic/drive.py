@@ -335,24 +335,31 @@ def _wall_faces(feature: Feature, island: Feature | None) -> tuple[int, ...]:
 
 
 def _rib_top(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
-    tags, frame, beside = feature.with_role("top"), space.setup.frame, tolerance.OFF_PLANE
+    tags, frame = feature.with_role("top"), space.setup.frame
     if not tags:
         raise Refused(f"{feature.id}: it has no top face; give it one or suppress {operation.id}")
     z = float(space.centre(tags[0])[2])
     wanted = space.part.face_outline(frame, tags[0])
     for tag in tags[1:]:
         wanted = wanted.union(space.part.face_outline(frame, tag))
-    # Free at the part's top as well: under a wall that leans over the rib no cutter gets in from above.
-    boundary = touching(
-        space.free_near(z + beside, wanted).intersect(space.free_near(space.top - beside, wanted)),
-        wanted,
-    )
+    wanted = wanted.minus(space.hanging_over(z + tolerance.OFF_PLANE, wanted))
+    boundary = _free_over(z, wanted, space)
     walls = tuple(
         WallGuide(curve=run, top=space.top, bottom=z, fillet=0.0, faces=())
         for curve in wanted.curves()
         for run in runs(curve, on_rim(curve, boundary))
     )
     return _top(operation, feature, space, z, wanted, boundary, walls)
+
+
+def _free_over(z: float, wanted: Region, space: SetupSpace) -> Region:
+    """Return where a cutter may be at the height of a top of the part: free at the part's top as well, for under a wall that leans over no
+    cutter gets in from above."""
+    beside = tolerance.OFF_PLANE
+    return touching(
+        space.free_near(z + beside, wanted).intersect(space.free_near(space.top - beside, wanted)),
+        wanted,
+    )
 
 
 def _island_top(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
@@ -362,6 +369,9 @@ def _island_top(operation: Operation, feature: Feature, space: SetupSpace) -> Pl
             f"{feature.id}: it has no top face or stands in no pocket; give it both or suppress {operation.id}"
         )
     z = float(space.centre(tags[0])[2])
+    if space.is_freeform(pocket):
+        wanted = space.part.face_outline(space.setup.frame, tags[0])
+        return _top(operation, feature, space, z, wanted, _free_over(z, wanted, space), ())
     over = next((b for b in space.bands_of(pocket) if abs(b.bottom - z) < tolerance.SEW), None)
     if over is None:
         raise Refused(

@@ -23,6 +23,7 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Piece, Region, union_al
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.setup import Setup
+from trunnion.plan.prismatic.lean import is_freeform
 from trunnion.recognize.grow import bend_radius
 from trunnion.recognize.holes.sweep import arcs, axis_frame, holds
 
@@ -58,12 +59,19 @@ class Band:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Ceiling:
-    """A face that looks down somewhere: the highest position where it does, its highest position at all, and its box in plan."""
+    """A face that looks down somewhere: the highest position where it does, its highest position at all, the heights of its edges with tops
+    of the part, and its box in plan."""
 
     hangs: float
     top: float
+    rims: tuple[float, ...]
     low: Floats
     high: Floats
+
+    def sections_over(self, z: float) -> tuple[float, ...]:
+        """Return the heights of sections that show all that hangs over a height: over a recess, and under the upper edges of a wall."""
+        rims = (r - tolerance.OFF_PLANE for r in self.rims)
+        return (self.top + tolerance.OFF_PLANE, *(r for r in rims if r > z))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,22 +129,22 @@ class SetupSpace:
         """Return the part's material at a height, with all that hangs over it near a region: what an upright cutter must stay out of.
 
         A section through a recess in a wall shows free space that no upright cutter gets into; the section just over the recess closes it.
+        A wall that leans over is widest at its upper edges.
         """
         material = self.section(z)
-        if not near:
-            return material
+        return material.union(self.hanging_over(z, near)) if near else material
+
+    def hanging_over(self, z: float, near: Region) -> Region:
+        """Return the part's material in the sections above a height that show what hangs over it near a region, if anything."""
         low, high = near.box()
         over = [
-            c.top
+            height
             for c in self._hanging()
             if c.hangs > z and (c.low <= high).all() and (c.high >= low).all()
+            for height in c.sections_over(z)
         ]
-        above = [
-            self.section(c + tolerance.OFF_PLANE)
-            for c in _distinct(over)
-            if c + tolerance.OFF_PLANE < self.top
-        ]
-        return union_all([material, *above]) if above else material
+        above = [self.section(height) for height in _distinct(over) if height < self.top]
+        return union_all(above) if above else EMPTY_REGION
 
     def _hanging(self) -> list[_Ceiling]:
         """Return the faces that look down somewhere."""
@@ -155,6 +163,7 @@ class SetupSpace:
                     _Ceiling(
                         max(float(z[own & down].max()), crest),
                         max(float(z[own].max()), crest),
+                        _upper_edges(graph, row, frame),
                         plan.min(axis=0),
                         plan.max(axis=0),
                     )
@@ -204,6 +213,10 @@ class SetupSpace:
             if parent_of(f, self.recognition) is feature
         )
 
+    def is_freeform(self, feature: Feature) -> bool:
+        """Return whether a feature is a pocket that bands can't stand for: walls that lean, a floor that is curved."""
+        return is_freeform(feature, self.islands_of(feature), self.part.graph())
+
     def island_top(self, island: Feature) -> float:
         """Return the height of an island's top."""
         tops = island.with_role("top")
@@ -214,6 +227,21 @@ class SetupSpace:
         if feature.id not in self._bands:
             self._bands[feature.id] = self._found_bands(feature)
         return self._bands[feature.id]
+
+    def area_at(self, feature: Feature, z: float) -> Band:
+        """Return the area of a pocket at one height alone, closed over what ends below it; raise `Refused` where no free space is there."""
+        floors = self.floors_of(feature)
+        points = [self.centre(tag)[:2] for tag in feature.with_role("floor")] or [
+            self._middle_of(feature)
+        ]
+        sunken = [
+            self.centre(tag)[:2]
+            for island in self.islands_of(feature)
+            if self.island_top(island) <= z
+            for tag in island.with_role("top")
+        ]
+        low = min(floors.values(), default=self.bottom)
+        return self._band(feature, self.top_of(feature), low, z, points, sunken)
 
     def _found_bands(self, feature: Feature) -> tuple[Band, ...]:
         floors, islands = self.floors_of(feature), self.islands_of(feature)
@@ -299,7 +327,7 @@ class SetupSpace:
         points: list[Floats],
         sunken: list[Floats],
     ) -> Band:
-        material = self.material_over(z, self._over(feature))
+        material = self.material_over(z, self.plan_box(feature))
         if feature.kind == "open_pocket":
             wanted = holding(self.silhouette().minus(material), points)
             boundary = (
@@ -320,11 +348,11 @@ class SetupSpace:
     def _above_foot(self, feature: Feature, top: float, foot: float) -> Band:
         """Return the free space around a pocket over the fillets at its foot: what bounds it where its rim is lower than they are high."""
         z = min(foot + tolerance.OFF_PLANE, top - tolerance.OFF_PLANE)
-        free = self.around().minus(self.material_over(z, self._over(feature)))
+        free = self.around().minus(self.material_over(z, self.plan_box(feature)))
         inside = free.intersect(self.silhouette()) if feature.kind == "open_pocket" else free
         return Band(top=top, bottom=foot, wanted=inside, boundary=free)
 
-    def _over(self, feature: Feature) -> Region:
+    def plan_box(self, feature: Feature) -> Region:
         """Return the plan box of a feature's faces."""
         graph = self.part.graph()
         edges = sorted({e for tag in feature.tags for e in graph.edges_of[tag - 1]})
@@ -513,6 +541,20 @@ def _crest(graph: FaceGraph, row: int, frame: Frame) -> float:
     if not holds(arcs(graph, graph.edges_of[row], around), float(np.arctan2(up[1], up[0]))):
         return -np.inf
     return float(frame.to_local(graph.axis_point[row])[2] + graph.radius[row])
+
+
+def _upper_edges(graph: FaceGraph, row: int, frame: Frame) -> tuple[float, ...]:
+    """Return the heights of a face's edges with faces that lie level and look up, each once."""
+    up = frame.local_direction(graph.normal)[:, 2] > np.cos(tolerance.ANGLE)
+    edges = [
+        e
+        for e in graph.edges_of[row]
+        if up[graph.across(e, row)]
+        and graph.surface[graph.across(e, row)] == "plane"
+        and graph.convexity[e] == CONVEX
+    ]
+    heights = frame.to_local(graph.middle[edges])[:, 2] if edges else np.zeros(0)
+    return tuple(_distinct(heights.tolist()))
 
 
 def _distinct(heights: Iterable[float]) -> list[float]:

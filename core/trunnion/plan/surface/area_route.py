@@ -14,6 +14,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.choice import NEGLIGIBLE, AreaCutters, cutter_for, named
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.areas import Area
+from trunnion.plan.freeform.finishing.chord import chord_choices
 from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, EXTENSION, SCALLOP, UPRIGHT_EARLIER
 from trunnion.plan.freeform.reach import AreaSamples, leans, reached, samples_on
 from trunnion.plan.freeform.tilted_reach import SAMPLES as LEANING_SAMPLES
@@ -38,8 +39,6 @@ LEANING = "-leaning"
 """Ends the name of an operation on what the upright cutters of an area can't come to."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
-COARSE, CHORD_SHARE = 0.01, 0.075
-"""mm: from this scallop height on passes need not follow their path as closely as strategies do by themselves; and how closely of it."""
 SOME = 0.02
 """Share of a face that is worth another strategy."""
 SLOPE_LIMITS = {
@@ -244,8 +243,7 @@ def _add_finish(
     choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: allowance}
     if settings.extension > 0.0:
         choices[EXTENSION] = settings.extension
-    if height >= COARSE:
-        choices[f"{strategy}.chord"] = CHORD_SHARE * height
+    choices |= chord_choices(strategy, height)
     if strategy in SLOPE_LIMITS and STEEP in registry.names("strategies"):
         key, past = SLOPE_LIMITS[strategy]
         choices[key] = min(max(settings.steep + past, 1.0), 89.0)

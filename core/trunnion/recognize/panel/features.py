@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from trunnion.findings import Finding, face_tags, warning
+from trunnion.findings import Finding, face_tags, info, warning
 from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.feature import FaceRole, Feature, Size
 from trunnion.recognize.panel.classes import FaceClass
@@ -24,6 +24,7 @@ from trunnion.recognize.panel.slicing.confirm import (
     ConfirmedPocket,
     confirm,
     refusal,
+    shape_remarks,
 )
 from trunnion.units import rounded
 
@@ -175,17 +176,27 @@ def _pocket(
     findings = list(confirmed.findings)
     reason = refusal(view, confirmed)
     if reason is not None:
-        code, why, remedy, rows = reason
-        attributes["refused"] = why
+        attributes["refused"] = reason.why
         findings.append(
             warning(
-                code,
-                f"{id} is not planned: {why}",
+                reason.code,
+                f"{id} is not planned: {reason.why}",
                 id,
-                *face_tags(r + 1 for r in rows),
-                remedy=remedy,
+                *face_tags(r + 1 for r in reason.rows),
+                remedy=reason.remedy,
             )
         )
+    else:
+        findings += [
+            info(
+                remark.code,
+                f"{id}: {remark.why}",
+                id,
+                *face_tags(r + 1 for r in remark.rows),
+                remedy=remark.remedy,
+            )
+            for remark in shape_remarks(view, confirmed)
+        ]
     roles = (
         *_roles("floor", pocket.floors),
         *((_side_role(view, w), w) for w in pocket.walls),

@@ -169,9 +169,11 @@ def _piece_contact_offset(
         else:
             low = u
         # d/du of g'(rho) u / rho: g'' (u / rho)^2 + g' beside^2 / rho^3, with g'' = c^2 / root^3.
-        bend = c * c / (root * root * root) * (u / rho) ** 2 + k * lateral * lateral / (
-            rho * rho * rho
-        )
+        # At a vertical end the root is nothing but rounding, and its cube may be none at all: halve there.
+        cube = root * root * root
+        bend = 0.0
+        if cube > 0.0:
+            bend = c * c / cube * (u / rho) ** 2 + k * lateral * lateral / (rho * rho * rho)
         step = u - value / bend if bend > 0.0 else low
         nearer = step if low < step < high else 0.5 * (low + high)
         if abs(nearer - u) <= _ROUNDING * max(1.0, u):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 
@@ -48,6 +48,16 @@ def named(shop: Shop, name: str) -> Tool:
     )
 
 
+def by_diameter(tool: Tool) -> float:
+    """Return a cutter's diameter: the largest is wanted, and smaller ones finish what it misses."""
+    return tool.diameter
+
+
+def by_corner(tool: Tool) -> float:
+    """Return a cutter's corner radius: what is steep is finished in the fewest passes by the roundest one."""
+    return tool.corner_radius
+
+
 def cutter_for(
     space: SurfaceSpace,
     samples: AreaSamples,
@@ -56,13 +66,14 @@ def cutter_for(
     clearance: float,
     wanted: Tool | None,
     progress: Progress,
+    size: Callable[[Tool], float] = by_diameter,
 ) -> AreaCutters:
-    """Return the largest cutter that reaches at least a share of what any one reaches of samples, the shortest of its size; or the one
-    that is `wanted`.
+    """Return the largest cutter, by a size of cutters, that reaches at least a share of what any one reaches of samples, the shortest of
+    its size; or the one that is `wanted`.
 
     What it misses goes to the largest smaller one that reaches nearly all any does of that.
     """
-    ranked = sorted(tools, key=lambda t: (-t.diameter, depth_reached(t), t.name))
+    ranked = sorted(tools, key=lambda t: (-size(t), -t.diameter, depth_reached(t), t.name))
     reach: dict[str, Bools] = {}
     for n, tool in enumerate([*ranked, *([wanted] if wanted else [])]):
         if tool.name not in reach:
@@ -86,7 +97,7 @@ def cutter_for(
     missed = reachable & ~reach[tool.name]
     if missed.sum() <= NEGLIGIBLE * total:
         missed = none
-    smaller = [t for t in ranked if t.diameter < tool.diameter]
+    smaller = [t for t in ranked if size(t) < size(tool)]
     rest = (
         next((t for t in smaller if (reach[t.name] & missed).sum() >= share * missed.sum()), None)
         if missed.any()

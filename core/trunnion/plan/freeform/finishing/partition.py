@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.plane.region import Region
 from trunnion.geometry.sheet.sheet import Sheet, edges_of, sheet_of, split_finely
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.progress import NO_PROGRESS, Progress
@@ -23,6 +24,8 @@ NEAR_END = 0.05
 """Share of an edge: how near its ends the rim crosses it at most."""
 BETWEEN = 0.25
 """Of a triangle's longest side: how far a position of its sides is from the nearest that is queried."""
+WITHIN, ACROSS = 2.0, 0.01
+"""mm: the longest edge of triangles that are parted at the rim of a plan area; and how far a face may run out of it unparted."""
 PART = 1_000_000
 """Added to a face's tag for a part of it: more than any part has faces."""
 
@@ -68,6 +71,33 @@ def parted_near(
         return skin, ()
     inside, outside = progress.aside(lambda _: _cut(fine, _past_rim(fine, above, around)))
     kept = np.setdiff1d(np.arange(len(face)), near)
+    found = _with_parts(skin, kept, inside, outside)
+    return found, tuple(int(t) for t in np.unique(inside.face))
+
+
+def parted_within(skin: Skin, tags: tuple[int, ...], area: Region) -> tuple[Skin, tuple[int, ...]]:
+    """Return the skin with what of faces lies within a plan area given tags of its own where a face runs out of it, and the tags of
+    all that is within."""
+    rows = np.flatnonzero(skin.of(tags))
+    outside = ~area.contains(skin.points[skin.triangles[rows]].reshape(-1, 3)[:, :2], -ACROSS)
+    crossing = np.unique(skin.face[rows][outside.reshape(-1, 3).any(axis=1)])
+    if not len(crossing):
+        return skin, tags
+    some = tuple(int(t) for t in crossing)
+    face = skin.face.copy()
+    mine = np.isin(face, crossing)
+    face[mine] += PART
+    fine = split_finely(
+        sheet_of(replace(skin, face=face), tuple(t + PART for t in some)), _length, WITHIN
+    )
+    inside, beyond = _cut(fine, area.signed_distance(fine.points[:, :2]))
+    found = _with_parts(skin, np.flatnonzero(~mine), inside, beyond)
+    parts = tuple(int(t) for t in np.unique(inside.face))
+    return found, (*(t for t in tags if t not in some), *parts)
+
+
+def _with_parts(skin: Skin, kept: Ints, inside: Sheet, outside: Sheet) -> Skin:
+    """Return a skin of the triangles that are kept (k,) and of two sheets, the second one with the tags that its faces had."""
     points, normals, triangles, tag = (
         [skin.points],
         [skin.normals],
@@ -85,7 +115,7 @@ def parted_near(
         normals=np.concatenate(normals),
         triangles=np.concatenate(triangles),
         face=np.concatenate(tag),
-    ), tuple(int(t) for t in np.unique(inside.face))
+    )
 
 
 def _past_rim(sheet: Sheet, over: Floats, around: float) -> Floats:

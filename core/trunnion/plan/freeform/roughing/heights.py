@@ -41,10 +41,12 @@ class HeightMap:
         cell: float,
         allowance: float,
         progress: Progress = NO_PROGRESS,
+        most: int = MOST_SAMPLES,
     ) -> HeightMap:
-        """Return the map of a surface over a box with corners (3,), which should hold it with space to spare; nothing is below `low`."""
+        """Return the map of a surface over a box with corners (3,), which should hold it with space to spare; nothing is below `low`,
+        and there are at most `most` positions."""
         size = high[:2] - low[:2]
-        cell = cell_over(low, high, cell)
+        cell = cell_over(low, high, cell, most)
         count = np.ceil(size / cell).astype(int) + 1
         corner = 0.5 * (low[:2] + high[:2]) - 0.5 * cell * (count - 1)
         positions = corner + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
@@ -58,10 +60,10 @@ class HeightMap:
         return region_below(self.height, self.corner, self.cell, z, chord)
 
 
-def cell_over(low: Floats, high: Floats, cell: float) -> float:
-    """Return the side in mm of the cells of a map over a box with corners (3,): `cell`, or what keeps the map small enough."""
+def cell_over(low: Floats, high: Floats, cell: float, most: int = MOST_SAMPLES) -> float:
+    """Return the side in mm of the cells of a map over a box with corners (3,): `cell`, or what keeps it to `most` positions."""
     size = high[:2] - low[:2]
-    return max(cell, math.sqrt(float(size[0] * size[1]) / MOST_SAMPLES))
+    return max(cell, math.sqrt(float(size[0] * size[1]) / most))
 
 
 def wall_gap(cell: float, chord: float) -> float:

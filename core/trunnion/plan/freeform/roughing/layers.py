@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -32,10 +34,37 @@ LEAST_STRAIGHT = 0.02
 """mm: the same where hardly anything is left."""
 LEVEL_AREA = 4.0
 """mm2: level faces together at a height at least this large end a layer on them."""
+POCKET_SAMPLES = 240_000
+"""Positions of a pocket's map, which is made once for all of its operations: about four seconds of dropping."""
 WORTH = 0.2
 """Of a layer: stock that is no higher over it isn't worth a pass in it."""
 RIM = 2.0
 """Cells of the stock that walls keep high though everything beside them is cut."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class LayerArea:
+    """Where a pocket is roughed by layers: `low` and `high` (3,) are the corners of the box that is mapped, `level` the heights of level
+    faces that end layers, `within` returns the plan area that a layer with its bottom at a height keeps in."""
+
+    low: Floats
+    high: Floats
+    level: Sequence[float]
+    within: Callable[[float], Region]
+
+    def height_map(
+        self, space: SurfaceSpace, cell: float, allowance: float, progress: Progress
+    ) -> HeightMap:
+        """Return how high the part, thicker by an allowance, stands in the box, on cells of a side in mm."""
+        return HeightMap.of(
+            space.skin.drop, self.low, self.high, cell, allowance, progress, POCKET_SAMPLES
+        )
+
+    def remaining(self, cell: float, allowance: float) -> float:
+        """Return how thick, in mm and in the mean, layers leave material on upright walls; nowhere is it twice as thick."""
+        return allowance + wall_gap(
+            cell_over(self.low, self.high, cell, POCKET_SAMPLES), _chord(allowance)
+        )
 
 
 def plane_drive_of(
@@ -86,26 +115,67 @@ def _mapped_box(space: SurfaceSpace, cell: float) -> tuple[Floats, Floats]:
 def _layers(
     operation: Operation, space: SurfaceSpace, stock: StockHeights, progress: Progress
 ) -> PlaneDrive:
-    """Return layers down to the operation's bottom: what is over each that the part, its allowance all round, doesn't need.
-
-    A layer that nothing is over wants nothing.
-    """
-    allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
-    cell = number(operation, CELL)
+    """Return layers over all of the part, as `layers_of`."""
+    allowance, cell = number(operation, ALLOWANCE), number(operation, CELL)
     low, high = _mapped_box(space, cell)
     tall = HeightMap.of(space.skin.drop, low, high, cell, allowance, progress)
-    top, chord = float(stock.heights.max()), _chord(allowance)
-    blank, around = space.blank_area(), space.around()
-    outside = around.minus(
+    outside = space.around().minus(
         Region.rectangle(
             *(tall.corner + cell),
             *(tall.corner + tall.cell * (np.array(tall.height.shape) - 1) - cell),
         )
     )
+    chord = _chord(allowance)
+    return layers_of(
+        operation,
+        space,
+        stock,
+        level_faces(space),
+        lambda z: outside.union(tall.below(z, chord)),
+        progress,
+    )
+
+
+def pocket_layers(
+    operation: Operation,
+    space: SurfaceSpace,
+    stock: StockHeights,
+    area: LayerArea,
+    tall: HeightMap,
+    progress: Progress,
+) -> PlaneDrive:
+    """Return layers within the area of a pocket, as `layers_of`, from its height map."""
+    chord = _chord(number(operation, ALLOWANCE))
+    return layers_of(
+        operation,
+        space,
+        stock,
+        area.level,
+        lambda z: tall.below(z, chord).intersect(area.within(z)),
+        progress,
+    )
+
+
+def layers_of(
+    operation: Operation,
+    space: SurfaceSpace,
+    stock: StockHeights,
+    level: Sequence[float],
+    free_at: Callable[[float], Region],
+    progress: Progress,
+) -> PlaneDrive:
+    """Return layers down to the operation's bottom: what is over each that the part, its allowance all round, doesn't need.
+
+    `level` are the heights of level faces, which end a layer; `free_at` returns where nothing of the part with its allowance is at a height
+    or over it. A layer that nothing is over wants nothing.
+    """
+    allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
+    top = float(stock.heights.max())
+    blank, around = space.blank_area(), space.around()
     levels = []
-    for above, z in pairwise([top, *_heights(space, top, bottom, operation.data.depth, allowance)]):
+    for above, z in pairwise([top, *_heights(level, top, bottom, operation.data.depth, allowance)]):
         progress.check()
-        free = outside.union(tall.below(z, chord))
+        free = free_at(z)
         # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
         wanted = (
             free.intersect(blank)
@@ -125,14 +195,14 @@ def _layers(
 
 
 def _heights(
-    space: SurfaceSpace, top: float, bottom: float, step: float, allowance: float
+    level: Sequence[float], top: float, bottom: float, step: float, allowance: float
 ) -> list[float]:
     """Return the heights of layers from the top down, none thicker than a step: each level face ends one, its allowance kept."""
     breaks = [
         top,
         *(
             z + allowance
-            for z in level_faces(space)
+            for z in level
             if bottom + tolerance.SEW < z + allowance < top - tolerance.SEW
         ),
         bottom,

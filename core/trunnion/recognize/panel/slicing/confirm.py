@@ -14,6 +14,10 @@ LEANING_REMEDY = (
     "plan the part as one of curved surfaces (recognize.family=surface), or make the walls vertical"
 )
 
+SHAPE_REMEDY = (
+    "nothing needs to be done: layers rough it, waterlines and passes of constant scallop finish it"
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConfirmedPocket:
@@ -93,36 +97,68 @@ def confirm(view: PanelSide, pocket: Pocket) -> ConfirmedPocket:
     )
 
 
-def refusal(
-    view: PanelSide, confirmed: ConfirmedPocket
-) -> tuple[str, str, str, tuple[int, ...]] | None:
-    """Return why a vertical strategy would gouge or leave a pocket: code, reason, remedy and the face rows, or None when it wouldn't."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PocketFinding:
+    """What keeps a vertical strategy from a pocket: finding code, reason, remedy and the face rows."""
+
+    code: str
+    why: str
+    remedy: str
+    rows: tuple[int, ...]
+
+
+def refusal(view: PanelSide, confirmed: ConfirmedPocket) -> PocketFinding | None:
+    """Return why nothing is planned for a pocket, or None: slopes beside it belong to no feature, material stands over it, or it is reached
+    from below."""
     pocket, kind = confirmed.pocket, view.classes.kind
-    sides = (*pocket.sides, *(f for i in pocket.islands for f in (*i.walls, *i.corners)))
-    leaning = tuple(f for f in sides if kind[f] is not FaceClass.VERTICAL)
-    if leaning or pocket.slopes:
-        lean = max((abs(float(view.classes.lean[f])) for f in leaning + pocket.slopes), default=0.0)
-        return (
-            "panel.leaning-wall",
-            f"its walls lean by up to {lean:.1f} degrees",
-            LEANING_REMEDY,
-            leaning + pocket.slopes,
-        )
-    if _curved(view, pocket):
-        return (
-            "panel.curved-floor",
-            "its floor is curved",
-            "plan the part as one of curved surfaces (recognize.family=surface)",
-            tuple(f for f in pocket.floors if kind[f] is not FaceClass.UP),
-        )
-    if confirmed.covered > COVER:
-        return (
-            "panel.overhang",
-            f"material stands over {confirmed.covered:.0%} of it",
-            "machine it from another side, or with a T-slot cutter",
-            pocket.floors,
+    if pocket.slopes:
+        return _leaning(view, pocket)
+    hangs = any(kind[f] in (FaceClass.INNER, FaceClass.STEEP) for f in _all_sides(pocket))
+    if confirmed.covered > COVER and not hangs:
+        return PocketFinding(
+            code="panel.overhang",
+            why=f"material stands over {confirmed.covered:.0%} of it",
+            remedy="machine it from another side, or with a T-slot cutter",
+            rows=pocket.floors,
         )
     return None
+
+
+def shape_remarks(view: PanelSide, confirmed: ConfirmedPocket) -> tuple[PocketFinding, ...]:
+    """Return what a vertical strategy alone would gouge or leave of a pocket: leaning walls, a curved floor."""
+    pocket, kind = confirmed.pocket, view.classes.kind
+    found = []
+    if any(kind[f] is not FaceClass.VERTICAL for f in _all_sides(pocket)):
+        found.append(_leaning(view, pocket))
+    if _curved(view, pocket):
+        found.append(
+            PocketFinding(
+                code="panel.curved-floor",
+                why="its floor is curved",
+                remedy=SHAPE_REMEDY,
+                rows=tuple(f for f in pocket.floors if kind[f] is not FaceClass.UP),
+            )
+        )
+    return tuple(found)
+
+
+def _leaning(view: PanelSide, pocket: Pocket) -> PocketFinding:
+    rows = (
+        *(f for f in _all_sides(pocket) if view.classes.kind[f] is not FaceClass.VERTICAL),
+        *pocket.slopes,
+    )
+    lean = max((abs(float(view.classes.lean[f])) for f in rows), default=0.0)
+    return PocketFinding(
+        code="panel.leaning-wall",
+        why=f"its walls lean by up to {lean:.1f} degrees",
+        remedy=LEANING_REMEDY if pocket.slopes else SHAPE_REMEDY,
+        rows=rows,
+    )
+
+
+def _all_sides(pocket: Pocket) -> tuple[int, ...]:
+    """Return the sides of a pocket and of the islands in it."""
+    return (*pocket.sides, *(f for i in pocket.islands for f in (*i.walls, *i.corners)))
 
 
 def _has_holes_in_walls(view: PanelSide, pocket: Pocket) -> bool:

@@ -1,0 +1,158 @@
+"""The space of a pocket with leaning walls or a curved floor: where an upright cutter may be over each of its floors and at each height.
+
+Walls that lean away are narrowest at their foot, walls that lean over at their upper edge: what the vertical projection of everything above
+leaves free is all that an upright cutter gets into.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Refused
+from trunnion.geometry.plane.region import Region, union_all
+from trunnion.model.feature import Feature
+from trunnion.plan.freeform.reach import AreaSamples
+from trunnion.plan.freeform.roughing.layers import LayerArea
+from trunnion.plan.freeform.space import AROUND, SurfaceSpace
+from trunnion.plan.prismatic.drive import DriveLevel, Floor
+from trunnion.plan.prismatic.lean import SIDES, curved_floors, level_floors
+from trunnion.plan.prismatic.regions import SetupSpace, floor_fillet, number
+
+MARGIN = 1.0
+"""mm that the map of a pocket goes on past its rim."""
+FLATTEST = math.radians(30.0)
+"""Walls rise by at least this much from level: what rises less grows a pocket's rim by no more."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class FreeformPocket:
+    """A pocket that is more than upright walls round level floors, in the frame of its setup.
+
+    `level` are the tags of its level floors, `curved` those of its curved ones, `sides` those of all that stands around and in it, islands'
+    too. `bottom` and `top` are heights, `rim` that of its lowest rim; `mouth` is the plan area that is free just below the rim; `ribs` are
+    outlines of lower ribs beside it with their heights. `growth` and `hang` are by how much its walls lean away and
+    over at most, in mm a mm of height. `fillet` is the smallest radius at the foot of its sides, 0 where one is sharp.
+    """
+
+    feature: Feature
+    space: SetupSpace
+    level: tuple[int, ...]
+    curved: tuple[int, ...]
+    sides: tuple[int, ...]
+    tops: tuple[float, ...]
+    ribs: tuple[tuple[float, Region], ...]
+    bottom: float
+    top: float
+    rim: float
+    mouth: Region
+    growth: float
+    hang: float
+    fillet: float
+
+    @staticmethod
+    def of(
+        feature: Feature, space: SetupSpace, curved: SurfaceSpace, beside: Collection[str]
+    ) -> FreeformPocket:
+        """Return the space of a pocket, with the features `beside` it by id; raise `Refused` where the part has no free space over it."""
+        graph, frame = space.part.graph(), space.setup.frame
+        islands = space.islands_of(feature)
+        level = level_floors(feature, graph, frame)
+        bent = curved_floors(feature, graph)
+        if not (level or bent) or len(level) + len(bent) < len(feature.with_role("floor")):
+            raise Refused(
+                f"{feature.id}: it has no floor, or one that lies inclined; machine it by hand"
+            )
+        skin = curved.skin
+        heights = [float(space.centre(t)[2]) for t in level]
+        heights += [float(skin.points[skin.triangles[skin.of((t,))], 2].min()) for t in bent]
+        top = space.top_of(feature)
+        lowest = number(feature, "lowest_rim_z")
+        rim = min(space.height(lowest), top) if "lowest_rim_z" in feature.sizes else top
+        sides = tuple(dict.fromkeys(t for f in (feature, *islands) for t in f.with_role(*SIDES)))
+        band = space.area_at(feature, rim - tolerance.OFF_PLANE)
+        ribs = [f for f in space.recognition.of_kind("rib") if f.id in beside]
+        return FreeformPocket(
+            feature=feature,
+            space=space,
+            level=level,
+            curved=bent,
+            sides=sides,
+            tops=tuple(space.island_top(i) for i in islands),
+            ribs=tuple(
+                (float(space.centre(t)[2]), space.part.face_outline(frame, t))
+                for rib in ribs
+                for t in rib.with_role("top")
+            ),
+            bottom=min(heights),
+            top=top,
+            rim=rim,
+            mouth=band.boundary.intersect(band.wanted.offset(AROUND)),
+            growth=_growth(curved, feature.with_role("outer_convergence", "corner"), 1.0),
+            hang=_growth(curved, feature.with_role("inner_convergence", "corner"), -1.0),
+            fillet=min(floor_fillet(f) for f in (feature, *islands)),
+        )
+
+    def limit(self, z: float) -> Region:
+        """Return the plan area that is the pocket's at a height: below its lowest rim its mouth; above, where its space joins that of its
+        neighbours, the same over the ribs between and grown as its walls lean."""
+        over = [outline for height, outline in self.ribs if height <= z]
+        return union_all([self.mouth, *over]).offset(
+            self.growth * max(z - self.rim, 0.0) + tolerance.OFF_PLANE
+        )
+
+    def holds(self, samples: AreaSamples) -> AreaSamples:
+        """Return the samples that are the pocket's own, what hangs over among them: faces may run on into its neighbours."""
+        area = self.limit(self.top).offset(self.hang * (self.top - self.bottom))
+        return samples.of(area.contains(samples.point[:, :2]))
+
+    def layer_area(self) -> LayerArea:
+        """Return where the pocket is roughed by layers."""
+        low, high = self.limit(self.top).box()
+        z = float(self.space.blank_low[2]), float(self.space.blank_high[2])
+        heights = [float(self.space.centre(t)[2]) for t in self.level]
+        heights += [*self.tops, *(height for height, _ in self.ribs)]
+        return LayerArea(
+            low=np.array([*(low - MARGIN), z[0]]),
+            high=np.array([*(high + MARGIN), z[1]]),
+            level=tuple(sorted(set(heights), reverse=True)),
+            within=self.limit,
+        )
+
+    def floors(self) -> tuple[tuple[Floor, ...], tuple[DriveLevel, ...]]:
+        """Return the level floors from the highest down, as far as an upright cutter comes to them, and where it may be at their heights.
+
+        A fillet at the foot is suppressed: a cutter with a corner radius up to the fillet's, that keeps its radius from the rim, covers the
+        floor up to where the fillet begins (`plan.prismatic.drive.foot_clearance`).
+        """
+        space, found = self.space, []
+        for tag in self.level:
+            z = float(space.centre(tag)[2])
+            outline = space.part.face_outline(space.setup.frame, tag)
+            hanging = space.hanging_over(z + tolerance.OFF_PLANE, outline)
+            own = outline.offset(self.fillet).minus(hanging)
+            if own:
+                found.append(Floor(z=z, region=own, fillet=self.fillet, face=tag))
+        floors = tuple(sorted(found, key=lambda f: (-f.z, f.face)))
+        levels, above = [], space.top
+        for z in dict.fromkeys(f.z for f in floors):
+            wanted = union_all([f.region for f in floors if f.z == z])
+            free = space.area_at(self.feature, z + tolerance.OFF_PLANE).boundary
+            boundary = free.intersect(wanted.offset(AROUND)).union(wanted)
+            levels.append(DriveLevel(top=above, bottom=z, wanted=wanted, boundary=boundary))
+            above = z
+        return floors, tuple(levels)
+
+
+def _growth(curved: SurfaceSpace, tags: tuple[int, ...], away: float) -> float:
+    """Return by how much faces lean away (1) or over (-1) at most, in mm a mm of height."""
+    skin = curved.skin
+    normals = skin.normals[np.unique(skin.triangles[skin.of(tags)])]
+    if not len(normals):
+        return 0.0
+    rise = math.pi / 2.0 - np.arcsin(np.clip(away * normals[:, 2], 0.0, 1.0))
+    return float(1.0 / math.tan(max(float(rise.min()), FLATTEST)))

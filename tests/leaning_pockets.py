@@ -1,0 +1,80 @@
+"""Small blocks with pockets whose walls lean or whose floors are curved, built by cadquery for tests."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from random import Random
+from typing import Any
+
+import cadquery as cq
+
+BLOCK = (66.0, 54.0, 20.0)
+"""Sizes of the blocks, mm; a corner is at the origin."""
+FOOT = (36.0, 28.0)
+"""Sizes of a pocket at its floor, mm; it lies in the block's middle."""
+
+
+def block() -> Any:
+    """Return the block without a pocket."""
+    return cq.Workplane("XY").box(*BLOCK, centered=False)
+
+
+def upright_space(corner: float) -> Any:
+    """Return the space over a pocket's foot, with round corners, as high as the block."""
+    at = (BLOCK[0] / 2, BLOCK[1] / 2, 0.0)
+    sketch = cq.Workplane("XY", origin=at).sketch().rect(*FOOT).vertices().fillet(corner)
+    return sketch.finalize().extrude(BLOCK[2])
+
+
+@cache
+def leaning_block(
+    lean: float = 5.0, depth: float = 12.0, corner: float = 9.0, fillet: float = 4.0
+) -> Any:
+    """Return a block with a pocket whose four walls lean away by `lean` degrees, its corners cones; fillets (0: none) at their foot."""
+    at = (BLOCK[0] / 2, BLOCK[1] / 2, BLOCK[2] - depth)
+    sketch = cq.Workplane("XY", origin=at).sketch().rect(*FOOT).vertices().fillet(corner)
+    space = sketch.finalize().extrude(depth, taper=-lean)
+    if fillet > 0.0:
+        space = space.faces("<Z").edges().fillet(fillet)
+    return block().cut(space).val().wrapped
+
+
+@cache
+def mixed_block(
+    lean: float = 6.0, over: float = 5.0, depth: float = 12.0, corner: float = 8.0
+) -> Any:
+    """Return a block with a pocket of a wall that leans over its floor (at high x), one that leans away (low x), and two upright ones."""
+    low = BLOCK[2] - depth
+    x0, x1 = 0.5 * (BLOCK[0] - FOOT[0]), 0.5 * (BLOCK[0] + FOOT[0])
+    away, hang = (depth * math.tan(math.radians(a)) for a in (lean, over))
+    profile = [(x0, low), (x1, low), (x1 - hang, BLOCK[2]), (x0 - away, BLOCK[2])]
+    at = (0.0, 0.5 * (BLOCK[1] + FOOT[1]), 0.0)
+    space = cq.Workplane("XZ", origin=at).polyline(profile).close().extrude(FOOT[1])
+    between = cq.selectors.BoxSelector((0, 0, low + 1.0), (*BLOCK[:2], BLOCK[2] - 1.0))
+    return block().cut(space.edges(between).fillet(corner)).val().wrapped
+
+
+@cache
+def bowl_block(
+    radius: float = 160.0, depth: float = 9.0, corner: float = 8.0, fillet: float = 3.0
+) -> Any:
+    """Return a block with a pocket of upright walls over a floor that is part of a cylinder along y, lowest in the middle."""
+    at = (BLOCK[0] / 2, BLOCK[1], BLOCK[2] - depth + radius)
+    round_ = cq.Workplane("XZ", origin=at).circle(radius).extrude(BLOCK[1])
+    space = upright_space(corner).intersect(round_)
+    if fillet > 0.0:
+        space = space.faces("<Z").edges().fillet(fillet)
+    return block().cut(space).val().wrapped
+
+
+def random_block(seed: int) -> Any:
+    """Return the block of a seed with a pocket that leans away, of random lean, depth, corner and fillet."""
+    draw = Random(f"leaning {seed}")
+    corner = draw.choice((6.0, 8.0, 10.0))
+    return leaning_block(
+        draw.uniform(2.0, 14.0),
+        draw.uniform(6.0, 15.0),
+        corner,
+        draw.choice((0.0, 1.0, 2.0, 3.0, 4.0)),
+    )

@@ -1,0 +1,127 @@
+"""Pockets with leaning walls and curved floors: what is planned for them, where layers and floors may be, and what is named as left."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import leaning_pockets
+import samples
+from trunnion import tolerance
+from trunnion.model.session import Session
+from trunnion.pipeline import Engine
+from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.panel.feasibility import plannable
+from trunnion.plan.panel.freeform_pocket import FreeformPocket
+from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.progress import NO_PROGRESS
+
+SHAPES = {
+    "away": leaning_pockets.leaning_block,
+    "over": leaning_pockets.mixed_block,
+    "bowl": leaning_pockets.bowl_block,
+}
+
+
+@cache
+def routed(name: str) -> tuple[Engine, Session]:
+    engine = Engine()
+    return engine, engine.run(engine.open(samples.written(SHAPES[name]())), "route")
+
+
+def operations(name: str) -> dict[str, Any]:
+    process = routed(name)[1].process
+    assert process is not None
+    return {o.id: o for o in process.operations}
+
+
+@cache
+def pocket_of(name: str) -> tuple[FreeformPocket, SurfaceSpace]:
+    engine, session = routed(name)
+    assert session.recognition is not None and session.blank is not None
+    setup, part = session.setups[0], engine.context.part
+    space = SetupSpace.of(part, session.recognition, session.blank, setup)
+    curved = SurfaceSpace.of(part, engine.context.skin(tolerance.CHORD), session.blank, setup)
+    feature = session.recognition.feature("pocket-01")
+    return FreeformPocket.of(feature, space, curved, frozenset()), curved
+
+
+def not_planned(name: str) -> list[Any]:
+    return [f for f in routed(name)[1].findings() if f.code == "route.not-planned"]
+
+
+def test_a_pocket_whose_walls_lean_away_is_roughed_by_layers_and_finished_by_waterlines() -> None:
+    found = operations("away")
+    assert [found[f"{k}-pocket-01"].strategy for k in ("rough", "floor", "leaning_side")] == [
+        "plane.rough",
+        "plane.floor",
+        "surface.waterline",
+    ]
+    assert not not_planned("away")
+
+
+def test_its_waterlines_finish_every_side_with_an_end_that_fits_the_fillet() -> None:
+    feature = pocket_of("away")[0].feature
+    side = operations("away")["leaning_side-pocket-01"]
+    sides = feature.with_role("outer_convergence", "corner", "floor_fillet")
+    assert set(side.faces) == set(sides)
+    assert 0.0 < side.tool.corner_radius <= 4.0
+    assert side.choices["surface.scallop"] == 0.01
+
+
+def test_steps_of_layers_stand_out_of_a_leaning_wall_by_no_more_than_is_wanted() -> None:
+    rough = operations("away")["rough-pocket-01"]
+    assert rough.data.depth * math.tan(math.radians(5.0)) <= 0.5 + 1e-9
+
+
+def test_layers_keep_the_allowance_off_all_that_stands_at_their_height_or_over_it() -> None:
+    for name in SHAPES:
+        pocket, curved = pocket_of(name)
+        area = pocket.layer_area()
+        tall = area.height_map(curved, 0.25, 0.3, NO_PROGRESS)
+        points = curved.skin.points
+        for z in np.linspace(pocket.bottom + 0.4, pocket.top - 0.1, 7):
+            free = tall.below(float(z), 0.15).intersect(area.within(float(z)))
+            higher = points[points[:, 2] > z]
+            assert free.signed_distance(higher[:, :2]).max() < -0.25, (name, z)
+
+
+def test_a_wall_that_leans_over_is_named_with_its_faces_and_left() -> None:
+    pocket, _ = pocket_of("over")
+    (hanging,) = pocket.feature.with_role("inner_convergence")
+    (told,) = not_planned("over")
+    assert {"pocket-01", f"face {hanging}"} <= set(told.where)
+    assert all(hanging not in o.faces for o in operations("over").values())
+
+
+def test_a_floor_under_it_ends_where_its_upper_edge_is_seen_from_above() -> None:
+    pocket, _ = pocket_of("over")
+    (floor,), (level,) = pocket.floors()
+    away = 12.0 * math.tan(math.radians(5.0))
+    wide = np.diff(np.array(floor.region.box()), axis=0)[0]
+    outline = np.sort([leaning_pockets.FOOT[0] - away, leaning_pockets.FOOT[1]])
+    assert np.sort(wide) == pytest.approx(outline, abs=0.01)
+    assert not floor.region.minus(level.boundary.offset(1e-3))
+
+
+def test_a_curved_floor_is_cut_at_a_constant_scallop_after_its_walls() -> None:
+    found = list(operations("bowl"))
+    order = [found.index(f"{k}-pocket-01") for k in ("rough", "leaning_side", "semi")]
+    assert order == sorted(order)
+    floor = operations("bowl")["curved_floor-pocket-01"]
+    assert floor.strategy == "surface.constant"
+    assert set(pocket_of("bowl")[0].curved) <= set(floor.faces)
+    assert not not_planned("bowl")
+
+
+def test_a_typical_plan_without_layers_refuses_leaning_walls() -> None:
+    _, session = routed("away")
+    assert session.recognition is not None
+    stages = routed("away")[0].context.shop.plan_for("panel", "").stages
+    plain = [s for s in stages if s.cutter not in ("layers", "sides")]
+    assert "pocket-01" in plannable(session.recognition, plain)[1]
+    assert "pocket-01" not in plannable(session.recognition, stages, freeform=True)[1]
