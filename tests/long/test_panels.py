@@ -23,7 +23,17 @@ def test_b4_is_programmed_and_proven():
     assert (verdict.gouge, verdict.collisions, verdict.rapids_in_stock) == (0.0, 0, 0)
 
 
-@pytest.mark.parametrize("name", ["B2", "B3", "B5"])
+def test_b5_is_programmed_and_proven_from_both_sides():
+    session = programmed(PARTS / "panel" / "B5.step")
+    verdict = session.verdict
+    assert [s.name for s in session.process.setups] == ["S1", "S2"]
+    assert verdict.releases and verdict.reachable >= 0.99
+    assert (verdict.gouge, verdict.collisions, verdict.rapids_in_stock) == (0.0, 0, 0)
+    webs = [f for f in session.findings() if f.code == "route.thin-web"]
+    assert webs and all("2 mm" in f.text for f in webs)
+
+
+@pytest.mark.parametrize("name", ["B2", "B3"])
 def test_what_can_not_be_cut_is_rejected_without_a_gouge(name):
     verdict = programmed(PARTS / "panel" / f"{name}.step").verdict
     assert verdict.outcome is Outcome.FAILED
