@@ -53,5 +53,6 @@ def _floors(space: SetupSpace, feature: Feature) -> list[tuple[int, float, Regio
     return [
         (tag, z, space.part.face_outline(frame, tag))
         for tag, z in space.floors_of(feature).items()
-        if abs(float(frame.local_direction(graph.normal[tag - 1])[2])) > 1.0 - tolerance.PARAMETRIC
+        if graph.surface[tag - 1] == "plane"
+        and abs(float(frame.local_direction(graph.normal[tag - 1])[2])) > 1.0 - tolerance.PARAMETRIC
     ]
