@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import replace
+from pathlib import Path
 
 from trunnion import registry
 from trunnion.findings import BadCall, Refused, Severity
@@ -27,11 +28,13 @@ def release(session: Session, *, name: str = "", date: str = "") -> tuple[Posted
         raise BadCall("nothing is proven yet: verify first")
     if not session.posted:
         errors = [f for f in session.findings() if f.severity is Severity.ERROR]
-        raise Refused(
-            f"no operation, no program: {errors[0].text}; {errors[0].remedy}"
+        why = (
+            f"{errors[0].text}; {errors[0].remedy}"
             if errors
-            else "no operation, no program: add one, or use what is suppressed"
+            else "every operation is suppressed; use one of them, or add one"
         )
+        part = Path(session.part.path).name if session.part else "this session"
+        raise Refused(f"{part}: nothing is cut: {why}")
     header = replace(Header.of(session, name=name, date=date), verdict=session.verdict)
     plan = plan_digest(session)
     return tuple(_stamped(posted, header, plan) for posted in session.posted)

@@ -79,9 +79,10 @@ def load_of(
     cuts = (area > 0.0) & ~moves.rapid & ((run.removed > 0.0) | (run.engagement > 0.0))
     angle = np.maximum(seen, least_angle(area, radius, flute))
     feed = np.where(cuts, speed * SECONDS_PER_MINUTE, 0.0)
-    # What a neighbour takes off goes at the neighbour's feed, in chips of that feed: a flat turn after a slow helix doesn't take the
-    # helix's share at its own.
+    # What a slower neighbour takes off goes at the neighbour's feed, in chips of that feed: a flat turn after a slow helix doesn't take
+    # the helix's share at its own. What a quicker one takes is no load of this move.
     flow = stretched(moves, run.removed * speed * SECONDS_PER_MINUTE, stretch)
+    flow = np.minimum(flow, mean_area * feed)
     wider = np.divide(area, mean_area, out=np.zeros(len(moves)), where=cuts)
     rate = flow * wider / MM_PER_METRE
     per_tooth, around = (
