@@ -443,7 +443,7 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
     lines: list[Any] = []
     evaluators, sides, middles = [], [], []
     parameters, points, owners, triangles, faces, borders = [], [], [], [], [], []
-    count = 0
+    count = made = 0
     for row, tag in enumerate(progress.over(tags, "Opening the faces into triangles")):
         shape = part.face_shape(tag)
         BRepMesh_IncrementalMesh(shape, how)
@@ -470,7 +470,8 @@ def _coarse(part: Part, tags: list[int], limits: Floats, progress: Progress) -> 
         triangles.append(t + count)
         faces.append(np.full(len(t), row))
         count += len(p)
-        _refuse_many(sum(map(len, triangles)), part.name, how.Deflection)
+        made += len(t)
+        _refuse_many(made, part.name, how.Deflection)
     border = _Border(
         *(np.concatenate([getattr(b, name) for b in borders]) for name in _Border.__slots__)
     )

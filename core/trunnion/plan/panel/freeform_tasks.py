@@ -26,7 +26,7 @@ from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLO
 from trunnion.plan.freeform.reach import AreaSamples, leans, samples_on
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.panel.freeform_pocket import FreeformPocket
-from trunnion.plan.panel.settings import LeaningSettings
+from trunnion.plan.panel.leaning_settings import LeaningSettings
 from trunnion.plan.panel.tasks import (
     FLOOR_DISTANCE,
     NEAR_FLOOR,
@@ -51,8 +51,6 @@ FOOT = 2.0
 """degrees: at the foot of sides over level floors, what leans less from level is the floor's; a fillet ends in it."""
 LAP = 5.0
 """degrees by which waterlines and passes of constant scallop go on past the slope where they meet."""
-SEEN = 0.02
-"""Share of a face that a cutter reaches, below which nothing is planned for it."""
 SAMPLES = 600
 """Positions on the faces of a pocket that its cutters are chosen by: one stands for less than what is left to no further cutter."""
 HANGING = 2.0
@@ -429,7 +427,7 @@ def _surface_task(
 ) -> OperationTask:
     """Return a task on faces with a cutter; `cut` is what stands on them and the scallop height that is wanted, mm."""
     depth, height = cut
-    faces = tuple(int(t) for t in np.unique(samples.face) if (samples.face == t).any())
+    faces = tuple(int(t) for t in np.unique(samples.face))
     width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
     area = samples.area * len(samples)
     why = (

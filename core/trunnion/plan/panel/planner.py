@@ -15,9 +15,9 @@ from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
 from trunnion.plan.panel.freeform_drives import freeform_drive, pocket_of
+from trunnion.plan.panel.leaning_settings import LeaningSettings
 from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.rules import TASK_MAKERS
-from trunnion.plan.panel.settings import LeaningSettings
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
 from trunnion.plan.prismatic.regions import SetupSpace

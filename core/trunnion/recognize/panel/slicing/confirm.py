@@ -99,7 +99,7 @@ def confirm(view: PanelSide, pocket: Pocket) -> ConfirmedPocket:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PocketFinding:
-    """What keeps a vertical strategy from a pocket: finding code, reason, remedy and the face rows."""
+    """What a finding says of a pocket that upright walls round a level floor don't tell of: code, reason, remedy and the face rows."""
 
     code: str
     why: str
@@ -108,8 +108,7 @@ class PocketFinding:
 
 
 def refusal(view: PanelSide, confirmed: ConfirmedPocket) -> PocketFinding | None:
-    """Return why nothing is planned for a pocket, or None: slopes beside it belong to no feature, material stands over it, or it is reached
-    from below."""
+    """Return why nothing is planned for a pocket, or None: slopes beside it belong to no feature, or material stands over it."""
     pocket, kind = confirmed.pocket, view.classes.kind
     if pocket.slopes:
         return _leaning(view, pocket)
