@@ -9,7 +9,8 @@ from scipy.spatial import cKDTree
 
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.sheet.fields import distances
-from trunnion.geometry.sheet.sheet import sheet_of, split_finely
+from trunnion.geometry.sheet.refine_sheet import split_finely
+from trunnion.geometry.sheet.sheet import sheet_of
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.toolpath.contact_passes.stepover.metric import metric_of, stepover_measure

@@ -30,7 +30,7 @@ xml
 """Plain words of programs and windows."""
 
 SHAPES = """
-above angles arc boundary bounded bounds column constant corner cost curve direction distance
+above angles arc boundary bounded bounds collapses column constant corner cost curve direction distance
 exact extreme figure fit fitting general geometry grid grow intersection lattice least limits
 locations measure measuring meshing one order ordered parallel path piece planned points radii
 radius range raw samples segment shape side slopes smallest space spacing sphere symmetry three

@@ -13,11 +13,12 @@ from pytest import approx
 from surface_forms import cylinder, grid, joined, plane, saddle, zone
 from trunnion.findings import Refused
 from trunnion.geometry.kernels.shortest_paths import fast_marching, fast_marching_compiled
-from trunnion.geometry.sheet import sheet as sheets
+from trunnion.geometry.sheet import refine_sheet
 from trunnion.geometry.sheet.contours import chains, whole_levels
 from trunnion.geometry.sheet.fields import Metric, beyond, blend, distances, turns_about
+from trunnion.geometry.sheet.refine_sheet import split_finely
 from trunnion.geometry.sheet.ridges import ridged
-from trunnion.geometry.sheet.sheet import sheet_of, split_finely
+from trunnion.geometry.sheet.sheet import sheet_of
 
 
 def in_mm(a, a_normal, b, b_normal):
@@ -74,7 +75,7 @@ def test_long_triangles_are_split_into_round_ones() -> None:
 
 
 def test_too_many_triangles_are_refused(monkeypatch) -> None:
-    monkeypatch.setattr(sheets, "MOST_TRIANGLES", 100)
+    monkeypatch.setattr(refine_sheet, "MOST_TRIANGLES", 100)
     with pytest.raises(Refused, match="higher scallop"):
         fine(plane(), 0.05)
 

@@ -1,13 +1,12 @@
 """A sheet: triangles of some faces of a skin, joined across patches wherever these run smoothly into each other.
 
-Surface strategies lay fields over sheets (`geometry/marching.py`, `geometry/morph.py`) and cut along their lines. A sheet's triangles
-may be split until they are fine enough for a field; the new points are put where the faces' own normals want them, on the cubic curve
+Surface strategies lay fields over sheets (`fields.py`, `contours.py`) and cut along their lines. A sheet's triangles may be split until
+they are fine enough for a field (`refine_sheet.py`); new points are put where the faces' own normals want them, on the cubic curve
 through both ends of the edge (Vlachos, Curved PN Triangles), so that they leave the faces by the fourth power of an edge only.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -17,20 +16,10 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from trunnion import tolerance
-from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.progress import NO_PROGRESS, Progress
 
 SMOOTH = np.cos(tolerance.SMOOTH_JOIN)
-MOST_TRIANGLES = 2_000_000
-"""Triangles of a sheet at most: half a gigabyte of working room."""
-ROUNDS = 400
-"""Rounds of splitting at most; each one halves the longest edges of all triangles."""
-TURNS = 12
-"""Rounds of turning edges at most; after a few hardly any are left."""
-OBTUSE = 0.05
-"""Sum of cotangents that is still no obtuse pair: points on a grid would turn their edges for ever."""
 Measure = Callable[[Floats, Floats, Floats, Floats], Floats]
 """The lengths (e,) of edges from points (e, 3) with normals (e, 3) to points (e, 3) with normals (e, 3)."""
 
@@ -108,7 +97,7 @@ class Sheet:
             fan = np.column_stack([np.roll(hole, -1), hole, np.full(n, middle)])
             sheet = Sheet(
                 points=np.vstack([sheet.points, sheet.points[hole].mean(axis=0)]),
-                normals=np.vstack([sheet.normals, _unit(sheet.normals[hole].sum(axis=0)[None])]),
+                normals=np.vstack([sheet.normals, unit(sheet.normals[hole].sum(axis=0)[None])]),
                 triangles=np.vstack([sheet.triangles, fan]),
                 face=np.concatenate([sheet.face, np.zeros(n, np.int64)]),
             )
@@ -178,7 +167,7 @@ def sheet_of(skin: Skin, faces: tuple[int, ...]) -> Sheet:
     real = (triangles != triangles[:, [1, 2, 0]]).all(axis=1)
     return Sheet(
         points=points[firsts],
-        normals=_unit(normal),
+        normals=unit(normal),
         triangles=triangles[real],
         face=skin.face[rows][real],
     )
@@ -220,162 +209,10 @@ def between(
     point = (
         a + s * direction + s * (1.0 - s) * ((1.0 - s) * (out - direction) - s * (into - direction))
     )
-    return point, _unit((1.0 - s) * a_normal + s * b_normal)
+    return point, unit((1.0 - s) * a_normal + s * b_normal)
 
 
-def split_finely(
-    sheet: Sheet, measure: Measure, longest: float, progress: Progress = NO_PROGRESS
-) -> Sheet:
-    """Return the sheet with triangles split until hardly an edge measures more than `longest`.
-
-    The limit falls by halves; at each one edges are turned in their pairs of triangles where that makes these less obtuse, since a
-    field is as good as its triangles. Raises `Refused` when too many triangles would be needed.
-    """
-    points, normals, triangles, face = sheet.points, sheet.normals, sheet.triangles, sheet.face
-    ends = edges_of(triangles, len(points))[0] if len(triangles) else np.zeros((0, 2), np.int64)
-    size = measure(points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]])
-    stages = max(math.ceil(math.log2(size.max(initial=longest) / longest)), 0)
-    for stage in range(stages, -1, -1):
-        points, normals, triangles, face = _split(
-            points, normals, triangles, face, measure, longest * 2.0**stage, progress
-        )
-        triangles = _turned(points, normals, triangles, face, measure, progress)
-    return Sheet(points=points, normals=normals, triangles=triangles, face=face)
-
-
-def _split(
-    points: Floats,
-    normals: Floats,
-    triangles: Ints,
-    face: Ints,
-    measure: Measure,
-    longest: float,
-    progress: Progress,
-) -> tuple[Floats, Floats, Ints, Ints]:
-    """Return points, normals, triangles and faces with edges halved that are too long and the longest of all their triangles, round after
-    round (Rivara): no triangle gets much thinner than those it was made of."""
-    whole, tags = [], []
-    for _ in range(ROUNDS):
-        progress.check()
-        ends, side = edges_of(triangles, len(points))
-        size = measure(
-            points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]]
-        )
-        rank = np.empty(len(size), np.int64)
-        rank[np.lexsort((np.arange(len(size)), size))] = np.arange(len(size))
-        corner = np.argmax(rank[side], axis=1)
-        widest = side[np.arange(len(side)), corner]
-        done = size[widest] <= longest
-        whole.append(triangles[done])
-        tags.append(face[done])
-        triangles, face, corner, widest, side = (
-            triangles[~done],
-            face[~done],
-            corner[~done],
-            widest[~done],
-            side[~done],
-        )
-        if not len(triangles):
-            break
-        agreed = np.bincount(widest, minlength=len(ends)) == np.bincount(
-            side.ravel(), minlength=len(ends)
-        )
-        halved = np.flatnonzero(agreed & (size > longest))
-        number = np.full(len(ends), -1)
-        number[halved] = len(points) + np.arange(len(halved))
-        a, b = ends[halved].T
-        more = between(points[a], normals[a], points[b], normals[b], np.full(len(halved), 0.5))
-        points, normals = np.vstack([points, more[0]]), np.vstack([normals, more[1]])
-        triangles, face = _halved(triangles, face, corner, number[widest])
-        if len(triangles) + sum(len(w) for w in whole) > MOST_TRIANGLES:
-            raise Refused(
-                f"passes this narrow over so large an area need over {MOST_TRIANGLES} triangles: allow a higher scallop, or cut "
-                "the area in pieces"
-            )
-    return points, normals, np.vstack([*whole, triangles]), np.concatenate([*tags, face])
-
-
-def _turned(
-    points: Floats,
-    normals: Floats,
-    triangles: Ints,
-    face: Ints,
-    measure: Measure,
-    progress: Progress,
-) -> Ints:
-    """Return the triangles with edges turned towards Delaunay's condition in a measure: the angles opposite an edge make no more than a
-    half turn. Edges between faces, and those in bent or hollow quadrangles, stay."""
-    triangles = triangles.copy()
-    for _ in range(TURNS):
-        progress.check()
-        ends, side = edges_of(triangles, len(points))
-        size = (
-            measure(
-                points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]]
-            )
-            ** 2
-        )
-        square = size[side]
-        total = square.sum(axis=1, keepdims=True)
-        four = np.sqrt(
-            np.maximum(total**2 - 2.0 * (square**2).sum(axis=1, keepdims=True), 1e-24 * total**2)
-        )
-        opposite = (total - 2.0 * square) / four
-        order = np.argsort(side.ravel(), kind="stable")
-        twice = np.flatnonzero(np.diff(side.ravel()[order]) == 0)
-        one, two = order[twice], order[twice + 1]
-        bad = opposite.ravel()[one] + opposite.ravel()[two]
-        wrong = (bad < -OBTUSE) & (face[one // 3] == face[two // 3])
-        one, two, bad = one[wrong], two[wrong], bad[wrong]
-        # Each triangle takes part in one turn at most: the worst one.
-        rank = np.empty(len(bad), np.int64)
-        rank[np.argsort(bad, kind="stable")] = np.arange(len(bad))
-        first = np.full(len(triangles), len(bad))
-        np.minimum.at(first, one // 3, rank)
-        np.minimum.at(first, two // 3, rank)
-        mine = (first[one // 3] == rank) & (first[two // 3] == rank)
-        one, two = one[mine], two[mine]
-        a, b, c, d = (
-            triangles[t // 3, (t % 3 + k) % 3] for t, k in ((one, 0), (one, 1), (one, 2), (two, 2))
-        )
-        made = np.column_stack([a, d, c]), np.column_stack([d, b, c])
-        known = (
-            set((np.minimum(*ends.T) * len(points) + np.maximum(*ends.T)).tolist())
-            if len(one)
-            else set()
-        )
-        fresh = np.array(
-            [
-                key not in known
-                for key in (np.minimum(c, d) * len(points) + np.maximum(c, d)).tolist()
-            ],
-            dtype=bool,
-        )
-        good = fresh & _upright(points, normals, made[0]) & _upright(points, normals, made[1])
-        if not good.any():
-            break
-        triangles[one[good] // 3], triangles[two[good] // 3] = made[0][good], made[1][good]
-    return triangles
-
-
-def _upright(points: Floats, normals: Floats, triangles: Ints) -> Bools:
-    """Return which triangles (t,) face, all but a little, as the faces do at their corners."""
-    a, b, c = np.moveaxis(points[triangles], 1, 0)
-    normal = _unit(np.cross(b - a, c - a))
-    return np.asarray((np.einsum("tk,tck->tc", normal, normals[triangles]) > SMOOTH).all(axis=1))
-
-
-def _halved(triangles: Ints, face: Ints, corner: Ints, middle: Ints) -> tuple[Ints, Ints]:
-    """Return triangles with those halved whose side that begins at `corner` (t,) gets a middle (t,), -1: none."""
-    rows = np.flatnonzero(middle >= 0)
-    a, b, c = (triangles[rows, (corner[rows] + k) % 3] for k in range(3))
-    kept = middle < 0
-    first, second = np.column_stack([a, middle[rows], c]), np.column_stack([middle[rows], b, c])
-    return np.vstack([triangles[kept], first, second]), np.concatenate(
-        [face[kept], face[rows], face[rows]]
-    )
-
-
-def _unit(vectors: Floats) -> Floats:
+def unit(vectors: Floats) -> Floats:
+    """Return vectors (k, 3) at length 1; those without length stay."""
     size = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)

@@ -15,7 +15,8 @@ from trunnion.findings import BadInput, Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sheet.contours import SheetLine, whole_levels
 from trunnion.geometry.sheet.fields import Metric, blend, turns_about
-from trunnion.geometry.sheet.sheet import Sheet, sheet_of, split_finely
+from trunnion.geometry.sheet.refine_sheet import split_finely
+from trunnion.geometry.sheet.sheet import Sheet, sheet_of
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane

@@ -11,7 +11,8 @@ from scipy.spatial import cKDTree
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.plane.region import Region
-from trunnion.geometry.sheet.sheet import Sheet, edges_of, sheet_of, split_finely
+from trunnion.geometry.sheet.refine_sheet import split_finely
+from trunnion.geometry.sheet.sheet import Sheet, edges_of, sheet_of
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.progress import NO_PROGRESS, Progress
 
@@ -121,23 +122,24 @@ def _with_parts(skin: Skin, kept: Ints, inside: Sheet, outside: Sheet) -> Skin:
 def _past_rim(sheet: Sheet, over: Floats, around: float) -> Floats:
     """Return for a sheet's points how far (v,) mm they are inside the rim, negative outside: `around` mm past where the values `over`
     (v,) are above nothing, bays and necks filled."""
-    away = _distance(sheet, over)
     bay = FILLED * around
-    inside = _distance(sheet, away - around - bay)
+    away = _distance(sheet, over, around + bay)
+    inside = _distance(sheet, away - around - bay, bay)
     return inside - bay
 
 
-def _distance(sheet: Sheet, value: Floats) -> Floats:
-    """Return how far (v,) mm a sheet's points are from where values (v,) are above nothing; infinite where these are nowhere."""
+def _distance(sheet: Sheet, value: Floats, most: float) -> Floats:
+    """Return how far (v,) mm a sheet's points are from where values (v,) are above nothing; infinite where these are nowhere, and where
+    they are more than an edge farther than `most`: no edge that crosses the line at `most` ends there."""
     above = value > 0.0
     if not above.any():
         return np.full(len(value), np.inf)
     ends = sheet.edges()[0]
+    longest = float(np.linalg.norm(np.diff(sheet.points[ends], axis=1)[:, 0], axis=1).max())
     ends = ends[above[ends[:, 0]] != above[ends[:, 1]]]
     border = sheet.on_edges(ends, _crossing(value, ends))[0]
-    found = np.asarray(
-        cKDTree(np.concatenate([sheet.points[above], border])).query(sheet.points)[0]
-    )
+    tree = cKDTree(np.concatenate([sheet.points[above], border]))
+    found = np.asarray(tree.query(sheet.points, distance_upper_bound=most + 1.01 * longest)[0])
     found[above] = 0.0
     return found
 
@@ -188,7 +190,9 @@ def _with_those_near(position: Floats, of: Ints, certain: Bools, around: float) 
     theirs."""
     if not certain.any():
         return np.zeros(len(of), dtype=bool)
-    away = np.asarray(cKDTree(position[certain]).query(position)[0])
     corners = position[of[:, :3]]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    return np.asarray(away[of].min(axis=1) <= around + BETWEEN * longest)
+    limit = around + BETWEEN * longest
+    farthest = np.nextafter(limit.max(), np.inf)
+    away = np.asarray(cKDTree(position[certain]).query(position, distance_upper_bound=farthest)[0])
+    return np.asarray(away[of].min(axis=1) <= limit)

@@ -18,8 +18,9 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sheet.contours import SheetLine, whole_levels
 from trunnion.geometry.sheet.fields import Metric, distances
+from trunnion.geometry.sheet.refine_sheet import split_finely
 from trunnion.geometry.sheet.ridges import RidgedSheet, opened, ridged
-from trunnion.geometry.sheet.sheet import Measure, Sheet, sheet_of, split_finely
+from trunnion.geometry.sheet.sheet import Measure, Sheet, sheet_of
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
@@ -68,7 +69,7 @@ def _passes_over(
     part: Sheet, measure: Measure, longest: float, radius: float, chord: float, progress: Progress
 ) -> list[Contacts]:
     """Return the passes over one connected part; `longest` mm is the stepover on a plane."""
-    sheet = opened(split_finely(part, measure, FINENESS, progress))
+    sheet = opened(split_finely(part, measure, FINENESS, progress, evenly=True))
     metric = metric_of(sheet, measure)
     progress.check()
     rims = sheet.rims()

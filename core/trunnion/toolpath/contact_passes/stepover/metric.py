@@ -145,7 +145,9 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     tree = cKDTree(sheet.points[ends[edge[row], 0]] + share[:, None] * run[edge[row]])
     # The rounder side holds no farther than the flatter one's stepovers are wide.
     density, middle = lengths / size, 0.5 * (sheet.points[ends[:, 0]] + sheet.points[ends[:, 1]])
-    near = np.flatnonzero(tree.query(middle)[0] <= 0.5 * size + PAST / density)
+    limit = 0.5 * size + PAST / density
+    nearest = tree.query(middle, distance_upper_bound=np.nextafter(limit.max(), np.inf))[0]
+    near = np.flatnonzero(nearest <= limit)
     position = (
         sheet.points[ends[near, 0]][:, None]
         + ((np.arange(SHARES) + 0.5) / SHARES)[:, None] * run[near][:, None]

@@ -1,0 +1,156 @@
+"""Points of a sheet that stand closer than a field needs them, taken away: what is left of long slivers that were split.
+
+Short edges are collapsed, one end onto the other (as in isotropic remeshing: Botsch and Kobbelt, A remeshing approach to multiresolution
+modeling, 2004), so that every point that stays is one of the faces'. Points on rims and on edges between faces stay where they are.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.sheet.sheet import SMOOTH, Measure, edges_of, unit
+from trunnion.progress import NO_PROGRESS, Progress
+
+SHORT = 0.45
+"""Of the limit: shorter edges are collapsed. Halving leaves edges of a half, or of a third askew."""
+TURN = math.cos(math.radians(12.0))
+"""Cosine of the turn of the normals along an edge at most: the cubic through its ends leaves an arc of 12 degrees by 3e-6 of its
+radius."""
+ROUNDS = 10
+"""Rounds of collapses at most; each one takes the shortest edge of every neighbourhood."""
+SCATTER, SCATTER_OVER = 2_654_435_761, 1 << 32
+"""Knuth's multiplier: products with rows, over a power of two, lie in no order."""
+ENOUGH = 0.002
+"""Share of the points: a round that takes fewer away is the last one."""
+
+
+def collapsed(
+    points: Floats,
+    normals: Floats,
+    triangles: Ints,
+    face: Ints,
+    measure: Measure,
+    limit: float,
+    longest: float,
+    progress: Progress = NO_PROGRESS,
+) -> tuple[Ints, Ints]:
+    """Return triangles (t, 3) and their faces (t,) with edges collapsed that measure less than `SHORT` of a limit, as long as none that is
+    made measures more than `longest`, turns by more than `TURN` or comes to lie in a folded triangle."""
+    n = len(points)
+    stuck = np.zeros(n, dtype=bool)
+    for _ in range(ROUNDS):
+        progress.check()
+        ends, side = edges_of(triangles, n)
+        a, b = ends.T
+        size = measure(points[a], normals[a], points[b], normals[b])
+        fixed = _on_borders(ends, side, face, n) | stuck
+        goes, onto = _shortest(ends, size, SHORT * limit, fixed)
+        goes, onto = _apart(triangles, goes, onto, n)
+        if not len(goes):
+            break
+        new = np.arange(n)
+        new[goes] = onto
+        fit = _fit(points, normals, triangles, ends, measure, longest, goes, onto)
+        stuck[goes[~fit]] = True
+        new[goes[~fit]] = goes[~fit]
+        triangles = new[triangles]
+        real = (triangles != triangles[:, [1, 2, 0]]).all(axis=1)
+        triangles, face = triangles[real], face[real]
+        if len(goes) < ENOUGH * n:
+            break
+    return triangles, face
+
+
+def _on_borders(ends: Ints, side: Ints, face: Ints, n: int) -> Bools:
+    """Return which of n points lie on rims, between faces, or on edges of more than two triangles."""
+    uses = np.bincount(side.ravel(), minlength=len(ends))
+    low, high = np.full(len(ends), np.iinfo(np.int64).max), np.full(len(ends), -1)
+    tags = np.repeat(face, 3)
+    np.minimum.at(low, side.ravel(), tags)
+    np.maximum.at(high, side.ravel(), tags)
+    found = np.zeros(n, dtype=bool)
+    found[ends[(uses != 2) | (low != high)]] = True
+    return found
+
+
+def _shortest(ends: Ints, size: Floats, limit: float, fixed: Bools) -> tuple[Ints, Ints]:
+    """Return the points (k,) that go and those they go onto, each along its shortest edge, those of the shortest ones first."""
+    rows = np.flatnonzero(size < limit)
+    rows = rows[np.argsort(size[rows], kind="stable")]
+    goes = np.column_stack([ends[rows, 1], ends[rows, 0]]).ravel()
+    onto = np.column_stack([ends[rows, 0], ends[rows, 1]]).ravel()
+    free = ~fixed[goes]
+    goes, onto = goes[free], onto[free]
+    first = np.unique(goes, return_index=True)[1]
+    goes, onto, at = goes[first], onto[first], rows[np.flatnonzero(free)[first] // 2]
+    # Of about the same length in no order that follows the rows: along a strip only one would win a round.
+    order = np.lexsort((goes * SCATTER % SCATTER_OVER, np.ceil(np.log2(size[at]))))
+    return goes[order], onto[order]
+
+
+def _apart(triangles: Ints, goes: Ints, onto: Ints, n: int) -> tuple[Ints, Ints]:
+    """Return those of the points that go whose triangles have no point in common with those of an earlier one."""
+    none = len(goes)
+    rank = np.full(n, none)
+    rank[goes] = np.arange(none)
+    of = rank[triangles]
+    least = np.full(n, none)
+    for k in range(3):
+        np.minimum.at(least, triangles[:, k], of.min(axis=1))
+    # A point wins where no triangle of its own has a corner that an earlier one reaches.
+    lost = np.zeros(none + 1, dtype=bool)
+    reached = least[triangles].min(axis=1)
+    for k in range(3):
+        lost[of[reached < of[:, k], k]] = True
+    won = ~lost[:none]
+    return goes[won], onto[won]
+
+
+def _fit(
+    points: Floats,
+    normals: Floats,
+    triangles: Ints,
+    ends: Ints,
+    measure: Measure,
+    longest: float,
+    goes: Ints,
+    onto: Ints,
+) -> Bools:
+    """Return which points (k,) may go onto others (k,): what their triangles become is no worse than is allowed."""
+    n = len(points)
+    rank, target = np.full(n, -1), np.arange(n)
+    rank[goes] = np.arange(len(goes))
+    target[goes] = onto
+    mine = rank[triangles].max(axis=1)
+    rows = np.flatnonzero(mine >= 0)
+    made, mine = target[triangles[rows]], mine[rows]
+    kept = (made != made[:, [1, 2, 0]]).all(axis=1)
+    made, mine = made[kept], mine[kept]
+    good = _upright(points, normals, made)
+    for k in range(3):
+        p, q = made[:, k], made[:, (k + 1) % 3]
+        good &= measure(points[p], normals[p], points[q], normals[q]) <= longest
+        good &= (normals[p] * normals[q]).sum(axis=1) >= TURN
+    fit = np.ones(len(goes), dtype=bool)
+    fit[mine[~good]] = False
+    return fit & (_shared(ends, rank, onto, n) == 2)
+
+
+def _shared(ends: Ints, rank: Ints, onto: Ints, n: int) -> Ints:
+    """Return how many neighbours (k,) a point that goes has in common with the one it goes onto: two, or triangles would coincide."""
+    keys = ends[:, 0] * n + ends[:, 1]
+    out = np.vstack([ends, ends[:, ::-1]])
+    out = out[rank[out[:, 0]] >= 0]
+    k, v = rank[out[:, 0]], out[:, 1]
+    wanted = np.minimum(onto[k], v) * n + np.maximum(onto[k], v)
+    at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    return np.bincount(k, keys[at] == wanted, minlength=len(onto)).astype(np.int64)
+
+
+def _upright(points: Floats, normals: Floats, triangles: Ints) -> Bools:
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    normal = unit(np.cross(b - a, c - a))
+    return np.asarray((np.einsum("tk,tck->tc", normal, normals[triangles]) > SMOOTH).all(axis=1))
