@@ -13,7 +13,7 @@ from trunnion.geometry.kernels.cutter_contact.drop_cutter import drop_cutter, he
 from trunnion.geometry.kernels.cutter_contact.push_cutter import push_cutter
 from trunnion.geometry.kernels.cutter_contact.push_cutter_compiled import triangle_push
 from trunnion.geometry.lattice import lattice_of
-from trunnion.geometry.surface.drop_surface import DropSurface
+from trunnion.geometry.surface.drop_surface import CHUNK, DropSurface
 
 FLAT = np.array([[0.0, 8.0, 0.0, 0.0, 0.0, 0.0]])
 BALL = np.array([[0.0, 3.0, 1.0, 0.0, 3.0, 3.0]])
@@ -282,3 +282,23 @@ def test_a_cutter_begins_no_higher_than_asked_up_to_its_radius_there(name: str) 
     assert (
         height_at(pieces, beyond)[beyond < pieces[-1, 1]] > height[1:][beyond < pieces[-1, 1]]
     ).all()
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+def test_few_points_at_a_time_find_the_same_as_many_at_once(name: str) -> None:
+    points, triangles = wavy(40)
+    rng = np.random.default_rng(11)
+    at = rng.uniform(-5.0, 65.0, (2 * CHUNK, 2))
+    at_once = DropSurface.of(points, triangles).contacts(at, CUTTERS[name], LOWEST)
+    # Few points fill in only what they meet of how triangles lift the cutter; many need all of it, whatever is known by then.
+    surface = DropSurface.of(points, triangles)
+    few = surface.contacts(at[:300], CUTTERS[name], LOWEST)
+    lifts = next(iter(surface._lifts.values()))
+    known = (lifts.own != 0.0).any(axis=1)
+    assert 0.0 < known.mean() < 1.0 and not lifts.is_whole
+    many = surface.contacts(at, CUTTERS[name], LOWEST)
+    assert lifts.is_whole and (lifts.own != 0.0).any(axis=1).all()
+    for found, some, whole in zip(many, few, at_once, strict=True):
+        assert np.array_equal(found, whole, equal_nan=True)
+        assert np.array_equal(some[:1], whole[:1], equal_nan=True)
+    assert few[0] == pytest.approx(at_once[0][:300], abs=1e-12)

@@ -50,7 +50,7 @@ class DropSurface:
     boxes: Floats
     planes: tuple[Floats, Floats]
     avoid: Floats = field(default_factory=lambda: np.zeros((0, 5)))
-    _lifts: dict[bytes, tuple[Floats, Floats]] = field(init=False, repr=False, default_factory=dict)
+    _lifts: dict[bytes, _Lifts] = field(init=False, repr=False, default_factory=dict)
     _lattice: list[Lattice] = field(init=False, repr=False, default_factory=list)
 
     @staticmethod
@@ -106,7 +106,8 @@ class DropSurface:
         """
         n = len(points)
         out, facet, contact = np.empty(n), np.empty(n, np.int64), np.empty((n, 3))
-        points, lifts = np.ascontiguousarray(points, dtype=np.float64), self._lifted(pieces)
+        points = np.ascontiguousarray(points, dtype=np.float64)
+        lifts = self._lifted(pieces, n > CHUNK)
         floor = np.full(n, lowest, dtype=np.float64)
 
         def work(first: int, last: int) -> None:
@@ -117,6 +118,7 @@ class DropSurface:
                 self.facets,
                 self.start,
                 self.boxes,
+                *self.planes,
                 *lifts,
                 pieces,
                 _ball(pieces),
@@ -175,17 +177,33 @@ class DropSurface:
             self._lattice.append(lattice_of(low, high, max(pitch, tolerance.PLANE_REGION)))
         return self._lattice[0]
 
-    def _lifted(self, pieces: Floats) -> tuple[Floats, Floats]:
-        """Return how the planes lift a cutter, each (n, 6); remembered for the last few cutters."""
+    def _lifted(self, pieces: Floats, whole: bool) -> tuple[Floats, Floats]:
+        """Return how the planes lift a cutter, each (n, 8); remembered for the last few cutters.
+
+        The `whole` of them is worked out at once, for threads to read. Else the kernel fills rows that are all 0 when it meets them: a few
+        hundred points meet a small share of a part's triangles.
+        """
         key = pieces.tobytes()
         if key not in self._lifts:
             if len(self._lifts) >= CUTTERS:
                 self._lifts.pop(next(iter(self._lifts)))
-            made = tuple(np.empty((len(planes), kernel.LIFT_COLUMNS)) for planes in self.planes)
-            for planes, lifts in zip(self.planes, made, strict=True):
+            nodes, own = (np.zeros((len(p), kernel.LIFT_COLUMNS)) for p in self.planes)
+            self._lifts[key] = _Lifts(nodes, own)
+        kept = self._lifts[key]
+        if whole and not kept.is_whole:
+            for planes, lifts in zip(self.planes, (kept.nodes, kept.own), strict=True):
                 kernel.plane_lift_loop(planes, pieces, lifts)
-            self._lifts[key] = (made[0], made[1])
-        return self._lifts[key]
+            kept.is_whole = True
+        return kept.nodes, kept.own
+
+
+@dataclass(slots=True)
+class _Lifts:
+    """How the planes of a tree's nodes (nodes, 8) and of its facets (t, 8) lift a cutter, and whether every row has been worked out."""
+
+    nodes: Floats
+    own: Floats
+    is_whole: bool = False
 
 
 def _ball(pieces: Floats) -> float:

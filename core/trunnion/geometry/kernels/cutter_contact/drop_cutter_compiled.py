@@ -325,25 +325,27 @@ def _facet_drop(px: float, py: float, f: Floats, pieces: Floats, best: float) ->
 
 
 @njit(cache=True, nogil=True)
-def plane_lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
-    """Fill lifts (n, 8), as `LIFT_X` to `SECANT` name it, with how planes (n, 3), slopes along x and y
-    and height over (0, 0), lift a cutter.
+def _plane_lift(plane: Floats, pieces: Floats, lift: Floats) -> None:
+    """Fill lift (8,), as `LIFT_X` to `SECANT` name it, with how a plane (3,), slopes along x and y and
+    height over (0, 0), lifts a cutter.
 
     Touching the plane at rho uphill lifts the tip to plane(x, y) + rho steep - g(rho).
     """
+    gx, gy, height = plane[0], plane[1], plane[2]
+    steep = math.sqrt(gx * gx + gy * gy)
+    lift[LIFT_X], lift[LIFT_Y], lift[OUT_X], lift[OUT_Y] = gx, gy, 0.0, 0.0
+    rho = _contact_radius(pieces, steep)
+    if steep > 0.0:
+        lift[OUT_X], lift[OUT_Y] = rho * gx / steep, rho * gy / steep
+    lift[HEIGHT], lift[SLOPE], lift[SECANT] = height, steep, math.sqrt(1.0 + steep * steep)
+    lift[LIFT] = height + rho * steep - _profile_height(pieces, rho)
+
+
+@njit(cache=True, nogil=True)
+def plane_lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
+    """Fill lifts (n, 8) with how planes (n, 3) lift a cutter, row by row as `_plane_lift` does."""
     for n in range(len(planes)):
-        gx, gy, height = planes[n, 0], planes[n, 1], planes[n, 2]
-        steep = math.sqrt(gx * gx + gy * gy)
-        lifts[n, LIFT_X], lifts[n, LIFT_Y], lifts[n, OUT_X], lifts[n, OUT_Y] = gx, gy, 0.0, 0.0
-        rho = _contact_radius(pieces, steep)
-        if steep > 0.0:
-            lifts[n, OUT_X], lifts[n, OUT_Y] = rho * gx / steep, rho * gy / steep
-        lifts[n, HEIGHT], lifts[n, SLOPE], lifts[n, SECANT] = (
-            height,
-            steep,
-            math.sqrt(1.0 + steep * steep),
-        )
-        lifts[n, LIFT] = height + rho * steep - _profile_height(pieces, rho)
+        _plane_lift(planes[n], pieces, lifts[n])
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -599,6 +601,8 @@ def drop_cutter_loop(
     facets: Floats,
     start: Ints,
     boxes: Floats,
+    node_planes: Floats,
+    planes: Floats,
     node_lifts: Floats,
     lifts: Floats,
     pieces: Floats,
@@ -611,10 +615,12 @@ def drop_cutter_loop(
     """Fill out[first:last] with the tip's height (mm) over plan points (n, 2) when the cutter touches
     facets (t, 19), at least lowest (n,).
 
-    Facets lie in a tree as `drop_bvh` makes it: start (leaves + 1,), boxes (nodes, 5); lifts (t,
-    8) and node_lifts (nodes, 8) as `plane_lift_loop` makes them, of planes that nothing of a facet or a
-    node's facets is above; ball: the radius of a ball end, 0 for other cutters. facet (n,) gets the
-    row of the one that is touched, -1 over none, contact (n, 3) where, NaN over none.
+    Facets lie in a tree as `drop_bvh` makes it: start (leaves + 1,), boxes (nodes, 5). planes (t, 3) and
+    node_planes (nodes, 3) are those that nothing of a facet or a node's facets is above, lifts (t, 8) and
+    node_lifts (nodes, 8) as `plane_lift_loop` makes them of these; a row whose SECANT is 0 is not known
+    yet and filled when it is met: then only one thread may have the arrays. ball: the radius of a ball
+    end, 0 for other cutters. facet (n,) gets the row of the one that is touched, -1 over none, contact
+    (n, 3) where, NaN over none.
 
     What the cutter touched last mostly lies under it at the next point too: a height to begin with
     that leaves little to search.
@@ -642,6 +648,10 @@ def drop_cutter_loop(
             reach = reaches[waiting]
             while node < inner and reach > best:
                 a, b = 2 * node + 1, 2 * node + 2
+                if node_lifts[a, SECANT] == 0.0:
+                    _plane_lift(node_planes[a], pieces, node_lifts[a])
+                if node_lifts[b, SECANT] == 0.0:
+                    _plane_lift(node_planes[b], pieces, node_lifts[b])
                 reach = _node_bound(px, py, boxes[a], node_lifts[a], pieces, radius, ball, best)
                 other = _node_bound(px, py, boxes[b], node_lifts[b], pieces, radius, ball, best)
                 # What may lift it more comes first: most of the rest is then too low to matter.
@@ -655,6 +665,8 @@ def drop_cutter_loop(
             if reach > best:
                 for r in range(start[node - inner], start[node - inner + 1]):
                     if r != contact_row:
+                        if lifts[r, SECANT] == 0.0:
+                            _plane_lift(planes[r], pieces, lifts[r])
                         better = _triangle_drop(
                             px,
                             py,
