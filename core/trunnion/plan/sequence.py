@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+CIRCLE = "operations wait for each other in a circle or for one that is not planned"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OrderedOperation:
@@ -24,58 +26,65 @@ def ordered(jobs: Sequence[OrderedOperation]) -> tuple[str, ...]:
     over sequences of tools only, breadth first, and the first that does everything has the fewest. Raises `ValueError` when jobs wait
     for each other in a circle or for one that isn't there.
     """
-    by_id = {j.id: j for j in jobs}
+    places = {j.id: n for n, j in enumerate(jobs)}
+    if any(not j.after <= places.keys() for j in jobs):
+        raise ValueError(CIRCLE)
     tools = sorted(
         {j.tool for j in jobs}, key=lambda t: (min(j.stage for j in jobs if j.tool == t), t)
     )
-    layer: dict[frozenset[str], tuple[str, ...]] = {frozenset(): ()}
-    seen: set[frozenset[str]] = {frozenset()}
+    # Sets of jobs as bits of a number: many thousands of them are looked at.
+    waits = [sum(1 << places[i] for i in j.after) for j in jobs]
+    of_tool = {t: [n for n, j in enumerate(jobs) if j.tool == t] for t in tools}
+    everything = (1 << len(jobs)) - 1
+    layer: dict[int, tuple[str, ...]] = {0: ()}
+    seen = {0}
     while layer:
-        for done, sequence in layer.items():
-            if len(done) == len(by_id):
-                return _walked(by_id, sequence)
-        following: dict[frozenset[str], tuple[str, ...]] = {}
+        if everything in layer:
+            return _walked(jobs, waits, of_tool, layer[everything])
+        following: dict[int, tuple[str, ...]] = {}
         for done, sequence in layer.items():
             for tool in tools:
-                more = done | _exhausted(by_id, tool, done)
+                more = _with_all_ready(of_tool[tool], waits, done)
                 if more not in seen:
                     seen.add(more)
                     following[more] = (*sequence, tool)
         layer = following
-    raise ValueError("operations wait for each other in a circle or for one that is not planned")
+    raise ValueError(CIRCLE)
 
 
-def _exhausted(
-    jobs: Mapping[str, OrderedOperation], tool: str, done: frozenset[str]
-) -> frozenset[str]:
-    """Return the jobs of one tool that can be done after `done`, among them those that only wait for each other."""
-    found: set[str] = set()
-    waiting = [j for j in jobs.values() if j.tool == tool and j.id not in done]
-    grew = True
-    while grew:
-        ready = [j for j in waiting if j.id not in found and j.after <= done | found]
-        found.update(j.id for j in ready)
-        grew = bool(ready)
-    return frozenset(found)
+def _with_all_ready(rows: Sequence[int], waits: Sequence[int], done: int) -> int:
+    """Return the jobs `done` (bits) with those of `rows` that can be done after them, among them those that only wait for each other."""
+    waiting = [n for n in rows if not done >> n & 1]
+    while True:
+        ready = [n for n in waiting if waits[n] & ~done == 0]
+        if not ready:
+            return done
+        done |= sum(1 << n for n in ready)
+        waiting = [n for n in waiting if not done >> n & 1]
 
 
-def _walked(jobs: Mapping[str, OrderedOperation], tools: Sequence[str]) -> tuple[str, ...]:
+def _walked(
+    jobs: Sequence[OrderedOperation],
+    waits: Sequence[int],
+    of_tool: Mapping[str, Sequence[int]],
+    tools: Sequence[str],
+) -> tuple[str, ...]:
     """Return the jobs tool by tool, within a tool by stage, within a stage always the nearest next."""
     order: list[str] = []
-    at = (0.0, 0.0)
+    at, done = (0.0, 0.0), 0
     for tool in tools:
-        remaining = _exhausted(jobs, tool, frozenset(order))
+        remaining = _with_all_ready(of_tool[tool], waits, done) & ~done
         while remaining:
-            ready = [jobs[i] for i in remaining if jobs[i].after <= set(order)]
+            ready = [n for n in of_tool[tool] if remaining >> n & 1 and waits[n] & ~done == 0]
             here = at
-            job = min(
+            n = min(
                 ready,
-                key=lambda j: (
-                    j.stage,
-                    (j.position[0] - here[0]) ** 2 + (j.position[1] - here[1]) ** 2,
-                    j.id,
+                key=lambda n: (
+                    jobs[n].stage,
+                    (jobs[n].position[0] - here[0]) ** 2 + (jobs[n].position[1] - here[1]) ** 2,
+                    jobs[n].id,
                 ),
             )
-            order.append(job.id)
-            at, remaining = job.position, remaining - {job.id}
+            order.append(jobs[n].id)
+            at, done, remaining = jobs[n].position, done | 1 << n, remaining & ~(1 << n)
     return tuple(order)

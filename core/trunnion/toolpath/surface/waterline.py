@@ -347,7 +347,7 @@ def _loops(
         progress.check()
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
         plan = line.value(grid.points)[:, :2]
-        near_area = _apart(near, plan, float(levels[line.level])) <= ROUGHLY * cell
+        near_area = _near(near, plan, float(levels[line.level]), ROUGHLY * cell)
         # So far only roughly, and as far as an edge may be rolled round.
         reach = settings.overlap + math.pi * radius
         found += [
@@ -372,7 +372,7 @@ def _loops(
     for loop, (line, _, closed) in zip(split, found, strict=True):
         z = float(levels[line.level])
         for rows, whole in _pieces(
-            loop, _apart(near, loop, z) <= NEARBY * cell, closed, settings.overlap, radius
+            loop, _near(near, loop, z, NEARBY * cell), closed, settings.overlap, radius
         ):
             rows = rows[np.append(True, np.hypot(*np.diff(loop[rows], axis=0).T) > CLOSE)]
             if len(rows) > 1:
@@ -384,9 +384,12 @@ def _loops(
     ]
 
 
-def _apart(tips: cKDTree, plan: Floats, z: float) -> Floats:
-    """Return how far tips at plan points (n, 2) and a height are from those that touch the area (n,)."""
-    return np.asarray(tips.query(np.column_stack([plan, np.full(len(plan), z)]))[0])
+def _near(tips: cKDTree, plan: Floats, z: float, distance: float) -> Bools:
+    """Return which tips at plan points (n, 2) and a height are no farther than a distance from those that touch the area (n,)."""
+    at = np.column_stack([plan, np.full(len(plan), z)])
+    # With a bound the tree looks at what is near alone: far positions would be the slow ones.
+    found = tips.query(at, distance_upper_bound=np.nextafter(distance, np.inf))[0]
+    return np.asarray(found <= distance)
 
 
 def _pieces(
