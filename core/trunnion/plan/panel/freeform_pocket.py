@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -53,6 +53,9 @@ class FreeformPocket:
     growth: float
     hang: float
     fillet: float
+    _floors: list[tuple[tuple[Floor, ...], tuple[DriveLevel, ...]]] = field(
+        init=False, repr=False, default_factory=list
+    )
 
     @staticmethod
     def of(
@@ -127,8 +130,13 @@ class FreeformPocket:
         """Return the level floors from the highest down, as far as an upright cutter comes to them, and where it may be at their heights.
 
         A fillet at the foot is suppressed: a cutter with a corner radius up to the fillet's, that keeps its radius from the rim, covers the
-        floor up to where the fillet begins (`plan.prismatic.drive.foot_clearance`).
+        floor up to where the fillet begins (`plan.prismatic.drive.foot_clearance`). Found on first use.
         """
+        if not self._floors:
+            self._floors.append(self._found_floors())
+        return self._floors[0]
+
+    def _found_floors(self) -> tuple[tuple[Floor, ...], tuple[DriveLevel, ...]]:
         space, found = self.space, []
         for tag in self.level:
             z = float(space.centre(tag)[2])

@@ -5,20 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from trunnion.findings import Finding, Refused, error, face_tags, warning
-from trunnion.geometry.arrays import Bools
 from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
+from trunnion.plan.cutting.milling import (
+    CuttingSettings,
+    cutting_data,
+    roughing_depth,
+    roughing_width,
+)
 from trunnion.plan.freeform.cutters.choice import (
     AreaCutters,
+    CutterStep,
     by_corner,
     by_diameter,
     cutter_for,
+    steps_of,
+    with_larger_first,
 )
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
@@ -43,7 +51,7 @@ from trunnion.plan.prismatic.regions import number
 from trunnion.plan.tool_choice import Candidates, ToolRequirement, depth_reached, fits_through
 from trunnion.settings import Value, choose
 from trunnion.shop import Stage
-from trunnion.units import trimmed
+from trunnion.units import SECONDS_PER_MINUTE, trimmed
 
 FLOOR_WIDTH = 0.6
 """Distance of a floor's passes over the width of the cutter's flat."""
@@ -312,24 +320,17 @@ def _side_tasks(
             # What stays at a wall that leans over is nowhere finished: necks keep off more than elsewhere.
             left *= HANGING
         shallowest = max(settings.steep - LAP, FOOT) if pocket.curved else FOOT
-        for tool, reached, earlier in _steps(cutters):
+        for step in steps_of(cutters):
             choices: dict[str, Value] = {
                 SCALLOP: settings.scallop,
                 ALLOWANCE: 0.0,
                 f"{SIDES_STRATEGY}.shallowest": shallowest,
                 **chord_choices(SIDES_STRATEGY, settings.scallop),
-                **_after(SIDES_STRATEGY, earlier),
+                **_after(SIDES_STRATEGY, step.earlier),
             }
             found.append(
                 _surface_task(
-                    state,
-                    stage,
-                    pocket,
-                    tool,
-                    samples.of(reached),
-                    choices,
-                    (left, settings.scallop),
-                    earlier,
+                    state, stage, pocket, step, samples, choices, (left, settings.scallop)
                 )
             )
     return found
@@ -365,26 +366,25 @@ def _on_curved_floors(
         left += 0.5 * _layer(pocket, settings)
         height = settings.semi_scallop if semi else settings.scallop
         is_after_layers = semi or settings.semi_allowance <= 0.0
-        for tool, reached, earlier in _steps(cutters):
+        change = state.machine.tool_change_s / SECONDS_PER_MINUTE
+        steps = with_larger_first(
+            cutters,
+            _balls(state),
+            samples.area,
+            partial(_area_rate, state, height=settings.scallop),
+            change,
+        )
+        for n, step in enumerate(steps):
             choices: dict[str, Value] = {
                 SCALLOP: height,
                 ALLOWANCE: settings.semi_allowance if semi else 0.0,
                 f"{FLOOR_STRATEGY}.steepest": settings.steep + LAP,
                 **chord_choices(FLOOR_STRATEGY, height),
-                **_after(FLOOR_STRATEGY, earlier),
+                **_after(FLOOR_STRATEGY, step.earlier),
             }
             depth = left if is_after_layers else settings.semi_allowance
             found.append(
-                _surface_task(
-                    state,
-                    stage,
-                    pocket,
-                    tool,
-                    samples.of(reached),
-                    choices,
-                    (depth, height),
-                    earlier,
-                )
+                _surface_task(state, stage, pocket, step, samples, choices, (depth, height), n)
             )
     return found
 
@@ -401,14 +401,6 @@ def _feet(state: PanelPlanState, pocket: FreeformPocket) -> tuple[int, ...]:
     return tuple(sorted(own & beside & fillets))
 
 
-def _steps(cutters: AreaCutters) -> list[tuple[Tool, Bools, Tool | None]]:
-    """Return the cutters of an area in order, each with the samples it is for and the one before it."""
-    if cutters.tool is None:
-        return []
-    first: list[tuple[Tool, Bools, Tool | None]] = [(cutters.tool, cutters.reached, None)]
-    return first + ([(cutters.rest, cutters.missed, cutters.tool)] if cutters.rest else [])
-
-
 def _after(strategy: str, earlier: Tool | None) -> dict[str, Value]:
     if earlier is None:
         return {}
@@ -419,14 +411,16 @@ def _surface_task(
     state: PanelPlanState,
     stage: Stage,
     pocket: FreeformPocket,
-    tool: Tool,
+    step: CutterStep,
     samples: AreaSamples,
     choices: Mapping[str, Value],
     cut: tuple[float, float],
-    earlier: Tool | None,
+    n: int = 1,
 ) -> OperationTask:
-    """Return a task on faces with a cutter; `cut` is what stands on them and the scallop height that is wanted, mm."""
-    depth, height = cut
+    """Return the task of the `n`-th cutter after an area's first one on the faces of its samples; `cut` is what stands on them and the
+    scallop height that is wanted, mm."""
+    (depth, height), tool, earlier = cut, step.tool, step.earlier
+    samples = samples.of(step.rows)
     faces = tuple(int(t) for t in np.unique(samples.face))
     width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
     area = samples.area * len(samples)
@@ -440,7 +434,7 @@ def _surface_task(
         state,
         stage,
         pocket,
-        f"{stage.kind}-{pocket.feature.id}{'-rest' if earlier else ''}",
+        f"{stage.kind}-{pocket.feature.id}{_rest_name(n) if earlier else ''}",
         ToolRequirement(
             depth=state.space.top - pocket.bottom,
             envelope_area=pocket.mouth,
@@ -453,6 +447,19 @@ def _surface_task(
         Candidates(tools=(tool,)),
         why,
     )
+
+
+def _rest_name(n: int) -> str:
+    """Return the end of the name of an area's `n`-th operation on a rest: `-rest`, then `-rest-2`."""
+    return "-rest" if n < 2 else f"-rest-{n}"
+
+
+def _area_rate(state: PanelPlanState, tool: Tool, height: float) -> float:
+    """Return what a ball finishes in mm2/min: the distance of its passes on a plane times its feed."""
+    width = stepover_on_plane(tool.corner_radius, height)
+    cutting = choose(CuttingSettings, state.choices)
+    data = cutting_data(tool, state.material, state.machine, "finish", cutting, height, width)
+    return width * data.feed
 
 
 def _cutters(
