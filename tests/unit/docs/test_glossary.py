@@ -40,7 +40,7 @@ time timing tracing
 
 EVERY_DAY = """
 accuracy allowed alternatives arrangement attempts bad bar cancelled candidates change colour
-colouring confirm confirmed contouring dense estimated evaluate execution external finish
+colouring confirm confirmed contouring dense details estimated evaluate execution external finish
 finished for free generate linking milled milling moment mover moves needs offsetting opened
 optimize passed patched pick planning posted rated recognize refine refined refused ridged
 rough round row run scale score shortest slicer slicing slider start suppression taken tally

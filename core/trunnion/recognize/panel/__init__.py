@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -15,6 +16,7 @@ from trunnion.recognize.contract import Slicer, Smallest, Suitability
 from trunnion.recognize.extent import box
 from trunnion.recognize.holes.recognize import find_holes
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
+from trunnion.recognize.panel.details import make_details
 from trunnion.recognize.panel.features import (
     FeatureNumbers,
     SideFeatures,
@@ -114,12 +116,10 @@ class PanelFamily:
         around = _surroundings(above, shown, features)
         features.extend(around.features)
         findings.extend(around.findings)
-        explained = {tag - 1 for f in features for tag in f.tags}
-        remaining = tuple(
-            r
-            for r, k in enumerate(above.classes.kind)
-            if r not in explained and k is not FaceClass.ABSENT
-        )
+        details = make_details(above, below, features, _unexplained(above, features), numbers)
+        features.extend(details.features)
+        findings.extend(details.findings)
+        remaining = _unexplained(above, features)
         findings.extend(above.slices.findings)
         findings.extend(
             rest_findings(
@@ -137,6 +137,16 @@ class PanelFamily:
             unexplained_share=float(graph.area[list(remaining)].sum() / graph.area.sum()),
             findings=tuple(findings),
         )
+
+
+def _unexplained(view: PanelSide, features: Sequence[Feature]) -> tuple[int, ...]:
+    """Return the rows of the faces that no feature holds."""
+    explained = {tag - 1 for f in features for tag in f.tags}
+    return tuple(
+        r
+        for r, k in enumerate(view.classes.kind)
+        if r not in explained and k is not FaceClass.ABSENT
+    )
 
 
 def _holes(

@@ -49,3 +49,11 @@ class PanelSettings:
         label="Largest hole",
         help="A round recess or opening up to this diameter is a hole, a wider one a pocket.",
     )
+    chamfer_width: float = setting(
+        5.0,
+        unit="mm",
+        low=0.0,
+        high=50.0,
+        label="Widest chamfer",
+        help="A slope between a level face and a wall that is wider, seen from above, is no chamfer.",
+    )
