@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import cast
 
+import contourpy
 import numpy as np
 import shapely
 
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.plane.plan_area import region_of
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.geometry.surface.drop_surface import DropSurface
@@ -21,8 +23,6 @@ from trunnion.progress import NO_PROGRESS, Progress
 
 MOST_SAMPLES = 60_000
 """Positions of a map: about a second of dropping; beyond, cells grow."""
-CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
-"""Corners of a cell, anticlockwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -78,22 +78,27 @@ def wall_gap(cell: float, chord: float) -> float:
 def region_below(height: Floats, corner: Floats, cell: float, z: float, chord: float) -> Region:
     """Return the area, over a grid of heights (nx, ny) with its first place at `corner` (2,), that lies at most at `z`.
 
-    Between the corners of a cell heights change evenly along its edges. Rims are straightened by at most `chord` mm and moved inwards by as
-    much, so that nothing higher comes in.
+    Between the corners of a cell heights change evenly along its edges; low corners across from one another are joined where the mean of
+    all four is low. Rims are straightened by at most `chord` mm and moved inwards by as much, so that nothing higher comes in.
     """
-    low: Bools = np.asarray(height <= z)
-    around = np.stack([low[i : i + low.shape[0] - 1, j : j + low.shape[1] - 1] for i, j in CORNERS])
-    whole = np.asarray(around.all(axis=0))
-    mixed = np.asarray(around.any(axis=0) & ~whole)
-    parts = [*_runs(whole, corner, cell), *_slices(height, mixed, corner, cell, z)]
-    if not parts:
-        return EMPTY_REGION
-    area = shapely.union_all(np.array(parts))
-    # Moved in by as much as it was straightened, corners kept sharp; and out and in again over what is narrower than that.
-    area = shapely.buffer(
-        shapely.simplify(area, chord), -chord, join_style="mitre", mitre_limit=2.0
+    contours = contourpy.contour_generator(
+        corner[0] + cell * np.arange(height.shape[0]),
+        corner[1] + cell * np.arange(height.shape[1]),
+        height.T,
+        name="serial",
+        fill_type=contourpy.FillType.OuterOffset,
     )
-    return region_of(area)
+    pieces = cast(tuple[list[Floats], list[Ints]], contours.filled(-math.inf, z))
+    rings = [np.split(points, ends[1:-1]) for points, ends in zip(*pieces, strict=True)]
+    if not rings:
+        return EMPTY_REGION
+    area = shapely.MultiPolygon([(outer, holes) for outer, *holes in rings])
+    # Where a corner lies at the very height, rims touch themselves.
+    whole = area if area.is_valid else shapely.make_valid(area)
+    # Moved in by as much as it was straightened, corners kept sharp; and out and in again over what is narrower than that.
+    return region_of(
+        shapely.buffer(shapely.simplify(whole, chord), -chord, join_style="mitre", mitre_limit=2.0)
+    )
 
 
 def _disc(radius: float, allowance: float) -> Floats:
@@ -104,44 +109,3 @@ def _disc(radius: float, allowance: float) -> Floats:
         if allowance <= 0.0
         else [level, [radius, radius + allowance, 1.0, radius, allowance, allowance]]
     )
-
-
-def _runs(whole: Bools, corner: Floats, cell: float) -> list[shapely.Geometry]:
-    """Return boxes over rows of cells that are whole."""
-    edge = np.diff(np.pad(whole, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    (i, first), (_, last) = np.nonzero(edge == 1), np.nonzero(edge == -1)
-    # Rows that meet have the very same x there: a hair between them would stay when rims are moved in.
-    x0, x1, y0, y1 = (
-        corner[0] + cell * i,
-        corner[0] + cell * (i + 1),
-        corner[1] + cell * first,
-        corner[1] + cell * last,
-    )
-    return [shapely.box(*corners) for corners in np.column_stack([x0, y0, x1, y1]).tolist()]
-
-
-def _slices(
-    height: Floats, mixed: Bools, corner: Floats, cell: float, z: float
-) -> list[shapely.Geometry]:
-    """Return what lies low of cells that are split: the corners below, and on the edges between the positions where they cross the
-    height."""
-    i, j = np.nonzero(mixed)
-    if not len(i):
-        return []
-    at = np.stack([np.column_stack([i + a, j + b]) for a, b in CORNERS], axis=1)
-    value = height[at[:, :, 0], at[:, :, 1]] - z
-    position, after, next_value = (
-        at.astype(np.float64),
-        np.roll(at, -1, axis=1),
-        np.roll(value, -1, axis=1),
-    )
-    crossed = (value <= 0.0) != (next_value <= 0.0)
-    share = np.divide(value, value - next_value, out=np.zeros_like(value), where=crossed)
-    crossing = position + share[:, :, None] * (after - position)
-    # Corner, crossing, corner, ... : what isn't there takes the place of what was before it, which adds no area.
-    ring = np.stack([position, crossing], axis=2).reshape(len(i), 8, 2)
-    there = np.stack([value <= 0.0, crossed], axis=2).reshape(len(i), 8)
-    twice = np.concatenate([there, there], axis=1)
-    rows = np.maximum.accumulate(np.where(twice, np.arange(16), -1), axis=1)[:, 8:] % 8
-    ring = corner + cell * np.take_along_axis(ring, rows[:, :, None], axis=1)
-    return [*np.atleast_1d(np.asarray(shapely.polygons(ring)))]

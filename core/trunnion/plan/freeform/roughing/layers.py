@@ -132,6 +132,7 @@ def _layers(
         stock,
         level_faces(space),
         lambda z: outside.union(tall.below(z, chord)),
+        (low, high),
         progress,
     )
 
@@ -152,6 +153,7 @@ def pocket_layers(
         stock,
         area.level,
         lambda z: tall.below(z, chord).intersect(area.within(z)),
+        (area.low, area.high),
         progress,
     )
 
@@ -162,12 +164,13 @@ def layers_of(
     stock: StockHeights,
     level: Sequence[float],
     free_at: Callable[[float], Region],
+    box: tuple[Floats, Floats],
     progress: Progress,
 ) -> PlaneDrive:
     """Return layers down to the operation's bottom: what is over each that the part, its allowance all round, doesn't need.
 
     `level` are the heights of level faces, which end a layer; `free_at` returns where nothing of the part with its allowance is at a height
-    or over it. A layer that nothing is over wants nothing.
+    or over it, within a `box` with corners (3,). A layer that nothing is over wants nothing.
     """
     allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
     top = float(stock.heights.max())
@@ -179,7 +182,7 @@ def layers_of(
         # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
         wanted = (
             free.intersect(blank)
-            .intersect(_stock_over(stock, z, above))
+            .intersect(stock_over(stock, z, above, box))
             .opened(0.5 * RIM * stock.cell)
         )
         levels.append(
@@ -233,16 +236,26 @@ def level_faces(space: SurfaceSpace) -> list[float]:
     return found
 
 
-def _stock_over(stock: StockHeights, z: float, above: float) -> Region:
-    """Return where the stock is over a layer by more than is worth nothing; rims beside walls, which are never certain, left out."""
-    most = float(stock.heights.max())
-    higher = stock.heights > z + WORTH * (above - z)
-    if higher.all():
-        low, high = stock.corner, stock.corner + stock.cell * np.array(stock.heights.shape)
-        return Region.rectangle(*low, *high)
+def stock_over(stock: StockHeights, z: float, above: float, box: tuple[Floats, Floats]) -> Region:
+    """Return where the stock in a box is over a layer by more than is worth nothing, rims beside walls, never certain, left out."""
+    heights, corner = _cells_in(stock, *box)
+    higher = heights > z + WORTH * (above - z)
     if not higher.any():
         return EMPTY_REGION
+    if higher.all():
+        return Region.rectangle(*corner, *(corner + stock.cell * np.array(heights.shape)))
     # Each cell of the stock as a position of a grid: low where it stands high.
+    most = float(heights.max())
     grid = np.pad(np.where(higher, most - 1.0, most + 1.0), 1, constant_values=most + 1.0)
-    found = region_below(grid, stock.corner - 0.5 * stock.cell, stock.cell, most, LEAST_STRAIGHT)
+    found = region_below(grid, corner - 0.5 * stock.cell, stock.cell, most, LEAST_STRAIGHT)
     return found.opened(RIM * stock.cell)
+
+
+def _cells_in(stock: StockHeights, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """Return the heights (nx, ny) of the cells in a box and some around it, which rims that are left out keep to, and their corner."""
+    around = 2.0 * RIM * stock.cell
+    first, last = (
+        np.clip(np.round((at - stock.corner) / stock.cell).astype(int), 0, stock.heights.shape)
+        for at in (low[:2] - around, high[:2] + around)
+    )
+    return stock.heights[first[0] : last[0], first[1] : last[1]], stock.corner + stock.cell * first
