@@ -31,12 +31,11 @@ from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
-    level_spacing,
-    marched,
     slopes_of,
 )
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import thinned
+from trunnion.toolpath.contact_passes.upright.wall_levels import UPWARD, lowest_tips, with_levels
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -55,21 +54,10 @@ SEEN, THINNED = 0.25, 0.4
 INSIDE = (0.25, 8.0, 0.75, 2.0)
 """How far inside of where the rim is expected beside a chord its search begins: near first, in what a chord's middle is expected off it;
 then in chord errors and in the chord's length, as a corner needs."""
-BELOW_TOP = 0.1
-"""Of a step: how far the last level lies below the highest position."""
-UPWARD = -math.sin(tolerance.ANGLE)
-"""The least part along z of normals of upright walls."""
 NEARBY, ROUGHLY = 1.0, 2.5
 """Cells: a tip this near to one on the area touches it; and one that is only known to be somewhere on a cell's side may."""
 ROLLS = 0.15
 """Of an arc: by how much the way round an edge may differ from it."""
-FLANK = 0.8
-"""Of the flutes' length over the corner: the largest step beside an upright wall."""
-FOOT, FEET = 5e-4, 0.2
-"""mm over what stops a cutter at the foot of an upright wall: there its lowest level is; and of the corner's radius: feet whose heights
-differ by less have one level."""
-OFF = 2e-3
-"""mm off an upright wall: there a cutter comes down past it."""
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
 
@@ -158,12 +146,15 @@ def waterline(
     found = _unreached_findings(drive, slopes)
     if not len(slopes.row):
         return Planned(findings=found)
-    feet = _feet(slopes, drive, tool, progress.part(0.0, 0.1))
-    levels = progress.aside(
-        lambda _: _levels(slopes, feet, tool, drive.height, settings.step), "Laying levels"
+    feet = lowest_tips(slopes, drive, tool, progress.part(0.0, 0.1))
+    walls = progress.aside(
+        lambda _: with_levels(slopes, feet, tool, drive.height, settings.step), "Laying levels"
     )
-    loops = _loops(levels, slopes, drive, tool, settings, progress.part(0.1, 0.8))
-    passes = _in_order(loops, tool, both=settings.way == "both")
+    passes: list[Pass] = []
+    for n, wall in enumerate(walls):
+        share = progress.part(0.1 + 0.7 * n / len(walls), 0.1 + 0.7 * (n + 1) / len(walls))
+        loops = _loops(wall.levels, wall.slopes, drive, tool, settings, share)
+        passes += _in_order(loops, tool, both=settings.way == "both")
     if not passes:
         nothing = warning(
             "surface.out-of-reach",
@@ -172,7 +163,7 @@ def waterline(
             remedy="finish them with a smaller or longer cutter",
         )
         return Planned(findings=(*found, nothing))
-    step = float(np.abs(np.diff(levels)).max(initial=tool.radius))
+    step = max(float(np.diff(wall.levels).max(initial=tool.radius)) for wall in walls)
     parameters = LinkParameters(
         stepover=max(step, tool.radius),
         safety=settings.safety,
@@ -200,60 +191,6 @@ def _unreached_findings(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Findin
             remedy="finish them by parallel passes or from another direction",
         ),
     )
-
-
-def _feet(slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
-    """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
-    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
-    upright = np.flatnonzero(slopes.normal[:, 2] <= -UPWARD)
-    shifted = (slopes.tips[upright] + OFF * slopes.normal[upright, None])[:, :, :2].reshape(-1, 2)
-    over = drive.skin.drop.drop(
-        shifted,
-        lower_side(tool, drive.allowance),
-        float(drive.low[2]) - tool.flute_length,
-        progress,
-    )
-    over = over + drive.allowance
-    stopped = over.reshape(-1, 3).min(axis=1) + FOOT
-    # Where it is stopped over the whole triangle, the foot is another one's.
-    low[upright] = np.where(
-        stopped < high[upright], np.maximum(low[upright], stopped), high[upright]
-    )
-    return low
-
-
-def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
-    """Return the heights of the tip (p,) upwards, from the lowest position that is touched; `feet` is how low the tip comes (m,)."""
-    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
-    spacing = np.full(len(low), step) if step > 0.0 else level_spacing(slopes, tool, height)
-    spacing = np.minimum(
-        spacing, FLANK * max(tool.flute_length - tool.corner_radius, tool.corner_radius)
-    )
-    levels = marched(low, high, spacing, float(feet.min()), float(high.max()))
-    if len(levels) > 1:
-        if not (slopes.normal[high > levels[-2], 2] > -UPWARD).any():
-            # The flank of the level below goes up an upright wall to its top.
-            levels = levels[:-1]
-        else:
-            # At its own height the last one would only pass over the top.
-            levels[-1] -= BELOW_TOP * (levels[-1] - levels[-2])
-    return np.unique(
-        [
-            *levels,
-            *_without_near(feet[(feet > low) & (feet < high)], levels, FEET * tool.corner_radius),
-        ]
-    )
-
-
-def _without_near(feet: Floats, levels: Floats, least: float) -> list[float]:
-    """Return heights of feet, upwards, that have no level near above them: none nearer to each other than the setting."""
-    found: list[float] = []
-    for z in np.unique(feet).tolist():
-        if (not found or z > found[-1] + least) and not (
-            (levels >= z - tolerance.COINCIDENT) & (levels < z + least)
-        ).any():
-            found.append(z)
-    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -348,11 +285,13 @@ def _loops(
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
         plan = line.value(grid.points)[:, :2]
         near_area = _near(near, plan, float(levels[line.level]), ROUGHLY * cell)
-        # So far only roughly, and as far as an edge may be rolled round.
-        reach = settings.overlap + math.pi * radius
+        # So far only roughly, and over gaps in which an edge may be rolled round.
+        gap = 2.0 * settings.overlap + math.pi * radius
         found += [
             (line, rows, closed)
-            for rows, closed in _pieces(plan, near_area, line.closed, reach, radius)
+            for rows, closed in _pieces(
+                plan, near_area, line.closed, settings.overlap + cell, radius, gap
+            )
         ]
     if not found:
         return []
@@ -393,10 +332,10 @@ def _near(tips: cKDTree, plan: Floats, z: float, distance: float) -> Bools:
 
 
 def _pieces(
-    plan: Floats, near: Bools, closed: bool, overlap: float, radius: float
+    plan: Floats, near: Bools, closed: bool, overlap: float, radius: float, gap: float = 0.0
 ) -> list[tuple[Ints, bool]]:
-    """Return the rows of the pieces of a path (k, 2) that are near the area, roll round an edge of it, or are no farther along the path
-    than an overlap from such, and whether each is closed."""
+    """Return the rows of the pieces of a path (k, 2) that are near the area, roll round an edge of it, are no farther along the path than
+    an overlap from such, or between two of them with no more than a `gap` between, and whether each is closed."""
     rows = np.arange(len(plan))
     if not near.any():
         return []
@@ -410,6 +349,7 @@ def _pieces(
     limits = np.concatenate([[-np.inf], run[near], [np.inf]])
     after = np.clip(np.searchsorted(limits, run), 1, len(limits) - 1)
     wanted = np.minimum(limits[after] - run, run - limits[after - 1]) <= overlap
+    wanted |= limits[after] - limits[after - 1] <= gap
     if wanted.all():
         return [(rows, closed)]
     if closed:

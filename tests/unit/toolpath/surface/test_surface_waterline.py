@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -211,3 +212,27 @@ def test_the_cutter_rolls_round_the_corners_of_a_block_in_one_closed_pass() -> N
     around = made.path.lengths()[made.path.mark == Mark.CUT].sum()
     # And over its start by half a millimetre.
     assert around == pytest.approx(2 * 20 + 2 * 15 + 2 * math.pi * 5.0 + 0.5, abs=0.01)
+
+
+def test_upright_walls_beside_leaning_ones_are_cut_on_levels_of_their_own() -> None:
+    upright, leaning = round_wall(32.0, 0.0, 4.0), round_wall(32.0, 0.0, 4.0, lean=0.3, tag=3)
+    skin = joined(upright, replace(leaning, points=leaning.points + [90.0, 0.0, 0.0]))
+    tips = cut_tips(planned(skin, FLAT, faces=(1, 3), chord=0.005)[0].path)
+    near = tips[:, 0] < 60.0
+    assert np.unique(tips[near, 2]).tolist() == [0.0]
+    levels = np.unique(tips[~near, 2].round(6))
+    assert len(levels) == pytest.approx(4.0 * math.sin(0.3) / 0.01, abs=2)
+    alone = cut_tips(planned(skin, FLAT, faces=(3,), chord=0.005)[0].path)
+    assert levels == pytest.approx(np.unique(alone[:, 2].round(6)))
+
+
+def test_a_pass_past_a_short_area_does_not_go_on_round_the_boss() -> None:
+    wall = round_wall(12.0, 0.0, 10.0)
+    some = wall.points[wall.triangles].mean(axis=1)[:, 0] > 26.0
+    skin = replace(wall, face=np.where(some & (wall.face == 1), 9, wall.face))
+    tips = cut_tips(planned(skin, FLAT, faces=(9,), chord=0.005, overlap=0.5)[0].path)
+    area = np.unique(skin.triangles[skin.face == 9])
+    half = math.atan2(np.ptp(skin.points[area, 1]) / 2.0, 11.0)
+    angle = np.abs(np.arctan2(tips[:, 1] - 15.0, tips[:, 0] - 15.0))
+    # Half a millimetre past the area and no more than a tip's width of the search.
+    assert half <= angle.max() <= half + 0.5 / 17.0 + 0.1

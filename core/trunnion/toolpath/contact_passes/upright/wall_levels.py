@@ -1,0 +1,135 @@
+"""Levels of waterlines: how low a cutter comes on each triangle of steep faces, and how far apart its passes lie over them.
+
+Upright walls want few levels, a flank's height apart, leaning ones as many as their scallops ask for: where it pays each kind gets its
+own levels.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.model.tool import Tool
+from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.progress import Progress
+from trunnion.toolpath.contact_passes.stepover.spacing import FacetSlopes, level_spacing, marched
+
+UPWARD = -math.sin(tolerance.ANGLE)
+"""The least part along z of normals of upright walls."""
+BELOW_TOP = 0.1
+"""Of a step: how far the last level lies below the highest position."""
+FLANK = 0.8
+"""Of the flutes' length over the corner: the largest step beside an upright wall."""
+FOOT, FEET = 5e-4, 0.2
+"""mm over what stops a cutter at the foot of an upright wall: there its lowest level is; and of the corner's radius: feet whose heights
+differ by less have one level."""
+OFF = 2e-3
+"""mm off an upright wall: there a cutter comes down past it."""
+OPEN = 100.0
+"""mm of feed that leads and links of a level cost which is open because upright walls have levels of their own."""
+
+
+def lowest_tips(slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
+    """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
+    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
+    upright = np.flatnonzero(slopes.normal[:, 2] <= -UPWARD)
+    shifted = (slopes.tips[upright] + OFF * slopes.normal[upright, None])[:, :, :2].reshape(-1, 2)
+    # Triangles share their corners.
+    _, first, of = np.unique(
+        np.round(shifted / tolerance.COINCIDENT).astype(np.int64),
+        axis=0,
+        return_index=True,
+        return_inverse=True,
+    )
+    over = drive.skin.drop.drop(
+        shifted[first],
+        lower_side(tool, drive.allowance),
+        float(drive.low[2]) - tool.flute_length,
+        progress,
+    )
+    over = over[of.ravel()] + drive.allowance
+    stopped = over.reshape(-1, 3).min(axis=1) + FOOT
+    # Where it is stopped over the whole triangle, the foot is another one's.
+    low[upright] = np.where(
+        stopped < high[upright], np.maximum(low[upright], stopped), high[upright]
+    )
+    return low
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WallLevels:
+    """Triangles that have their levels, heights of the tip (p,) upwards, in common."""
+
+    slopes: FacetSlopes
+    levels: Floats
+
+
+def with_levels(
+    slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float
+) -> list[WallLevels]:
+    """Return the triangles with their levels: those of leaning faces and those of upright ones on levels of their own where that saves
+    more than the passes cost that end where the two meet.
+
+    The flank of a cutter finishes an upright wall over all its flutes, a leaning one it leaves steps on.
+    """
+    together = WallLevels(slopes, _levels(slopes, feet, tool, height, step))
+    upright = slopes.normal[:, 2] <= -UPWARD
+    if step > 0.0 or upright.all() or not upright.any():
+        return [together]
+    apart = [
+        WallLevels(some, _levels(some, feet[which], tool, height, step))
+        for which in (~upright, upright)
+        for some in (slopes.some(which),)
+    ]
+    ends = OPEN * len(apart[0].levels)
+    return apart if _run(together) > sum(_run(w) for w in apart) + ends else [together]
+
+
+def _run(walls: WallLevels) -> float:
+    """Return about how long in mm the level lines on some triangles are: each adds its area, seen from the side, over the step there."""
+    low, high = walls.slopes.tips[:, :, 2].min(axis=1), walls.slopes.tips[:, :, 2].max(axis=1)
+    levels = walls.levels
+    if len(levels) < 2:
+        return 0.0
+    row = np.clip(np.searchsorted(levels, 0.5 * (low + high)), 1, len(levels) - 1)
+    side = np.sqrt(np.maximum(1.0 - walls.slopes.normal[:, 2] ** 2, 0.0))
+    return float((walls.slopes.area * side / np.diff(levels)[row - 1]).sum())
+
+
+def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
+    """Return the heights of the tip (p,) upwards, from the lowest position that is touched; `feet` is how low the tip comes (m,)."""
+    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
+    spacing = np.full(len(low), step) if step > 0.0 else level_spacing(slopes, tool, height)
+    spacing = np.minimum(
+        spacing, FLANK * max(tool.flute_length - tool.corner_radius, tool.corner_radius)
+    )
+    levels = marched(low, high, spacing, float(feet.min()), float(high.max()))
+    if len(levels) > 1:
+        if not (slopes.normal[high > levels[-2], 2] > -UPWARD).any():
+            # The flank of the level below goes up an upright wall to its top.
+            levels = levels[:-1]
+        else:
+            # At its own height the last one would only pass over the top.
+            levels[-1] -= BELOW_TOP * (levels[-1] - levels[-2])
+    return np.unique(
+        [
+            *levels,
+            *_without_near(feet[(feet > low) & (feet < high)], levels, FEET * tool.corner_radius),
+        ]
+    )
+
+
+def _without_near(feet: Floats, levels: Floats, least: float) -> list[float]:
+    """Return heights of feet, upwards, that have no level near above them: none nearer to each other than the setting."""
+    found: list[float] = []
+    for z in np.unique(feet).tolist():
+        if (not found or z > found[-1] + least) and not (
+            (levels >= z - tolerance.COINCIDENT) & (levels < z + least)
+        ).any():
+            found.append(z)
+    return found
