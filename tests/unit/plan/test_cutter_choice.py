@@ -7,7 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trunnion.plan.freeform.cutters.choice import AreaCutters, steps_of, with_larger_first
+from trunnion.plan.freeform.cutters.choice import (
+    AreaCutters,
+    steps_of,
+    with_larger_first,
+    with_rounder_between,
+)
+from trunnion.plan.freeform.estimate.scallop import level_step, stepover_on_plane
 from trunnion.shop import load_shop
 
 SHOP = load_shop(Path("/nowhere"))
@@ -56,3 +62,57 @@ def test_an_area_that_no_cutter_reaches_has_no_steps() -> None:
     none = np.zeros(4, dtype=bool)
     nothing = AreaCutters(tool=None, reached=none, reachable=none, missed=none, rest=None)
     assert steps_of(nothing) == with_larger_first(nothing, [LARGE], 1.0, lambda t: 1.0, 0.0) == ()
+
+
+ENDS = {
+    t.corner_radius: t
+    for t in SHOP.tools_for("N", "finish")
+    if t.form in ("flat", "bull") and t.diameter == 8.0
+}
+SHARP, ROUND, ROUNDER = ENDS[0.0], ENDS[0.5], ENDS[1.5]
+
+
+def in_corners(by_round: int, change: float):
+    """Of a hundred samples the rounder end reaches 90, the round one some of the rest, the sharp one all.
+
+    A sample takes a sharp end 1 min, a round one 0.2 min."""
+    rows = np.arange(100)
+    known = AreaCutters(
+        tool=ROUNDER,
+        reached=rows < 90,
+        reachable=rows < 100,
+        missed=rows >= 90,
+        rest=SHARP,
+        by_name={ROUNDER.name: rows < 90, ROUND.name: rows < 90 + by_round, SHARP.name: rows < 100},
+    )
+    return with_rounder_between(
+        known,
+        [SHARP, ROUND, ROUNDER],
+        lambda tool, mine: float(mine.sum()) * (1.0 if tool is SHARP else 0.2),
+        change,
+    )
+
+
+def test_a_rounder_end_goes_before_a_sharp_one_where_that_takes_less_time() -> None:
+    steps = in_corners(6, 1.0)
+    assert [s.tool for s in steps] == [ROUNDER, ROUND, SHARP]
+    assert [int(s.rows.sum()) for s in steps] == [90, 6, 4]
+    assert [s.earlier for s in steps] == [None, ROUNDER, ROUND]
+
+
+@pytest.mark.parametrize(("by_round", "change"), [(0, 0.0), (6, 5.0)])
+def test_it_does_not_where_it_reaches_nothing_or_changing_it_takes_longer(by_round, change) -> None:
+    assert [s.tool for s in in_corners(by_round, change)] == [ROUNDER, SHARP]
+
+
+def test_a_rounder_end_that_leaves_nothing_is_the_last() -> None:
+    assert [s.tool for s in in_corners(10, 1.0)] == [ROUNDER, ROUND]
+
+
+def test_levels_lie_apart_by_scallops_or_by_the_steps_of_flanks() -> None:
+    up = np.sin(np.radians([0.0, 5.0, 45.0, 90.0]))
+    flat = level_step(0.0, 0.01, up, 20.0)
+    assert flat.tolist() == pytest.approx([20.0, *(0.01 / up[1:])])
+    round_ = level_step(3.0, 0.01, up, 20.0)
+    assert round_[2] == pytest.approx(stepover_on_plane(3.0, 0.01) * np.cos(np.radians(45.0)))
+    assert (round_ >= flat).all()

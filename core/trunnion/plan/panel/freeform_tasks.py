@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from trunnion.findings import Finding, Refused, error, face_tags, warning
+from trunnion.geometry.arrays import Bools
 from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
@@ -25,10 +26,10 @@ from trunnion.plan.freeform.cutters.choice import (
     by_corner,
     by_diameter,
     cutter_for,
-    steps_of,
     with_larger_first,
+    with_rounder_between,
 )
-from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
+from trunnion.plan.freeform.estimate.scallop import level_step, stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, EARLIER, SCALLOP
 from trunnion.plan.freeform.reach import AreaSamples, leans, samples_on
@@ -320,7 +321,13 @@ def _side_tasks(
             # What stays at a wall that leans over is nowhere finished: necks keep off more than elsewhere.
             left *= HANGING
         shallowest = max(settings.steep - LAP, FOOT) if pocket.curved else FOOT
-        for step in steps_of(cutters):
+        steps = with_rounder_between(
+            cutters,
+            _side_cutters(state, pocket),
+            partial(_level_time, state, samples, settings.scallop),
+            _tool_change(state),
+        )
+        for n, step in enumerate(steps):
             choices: dict[str, Value] = {
                 SCALLOP: settings.scallop,
                 ALLOWANCE: 0.0,
@@ -330,7 +337,7 @@ def _side_tasks(
             }
             found.append(
                 _surface_task(
-                    state, stage, pocket, step, samples, choices, (left, settings.scallop)
+                    state, stage, pocket, step, samples, choices, (left, settings.scallop), n
                 )
             )
     return found
@@ -366,13 +373,12 @@ def _on_curved_floors(
         left += 0.5 * _layer(pocket, settings)
         height = settings.semi_scallop if semi else settings.scallop
         is_after_layers = semi or settings.semi_allowance <= 0.0
-        change = state.machine.tool_change_s / SECONDS_PER_MINUTE
         steps = with_larger_first(
             cutters,
             _balls(state),
             samples.area,
             partial(_area_rate, state, height=settings.scallop),
-            change,
+            _tool_change(state),
         )
         for n, step in enumerate(steps):
             choices: dict[str, Value] = {
@@ -460,6 +466,25 @@ def _area_rate(state: PanelPlanState, tool: Tool, height: float) -> float:
     cutting = choose(CuttingSettings, state.choices)
     data = cutting_data(tool, state.material, state.machine, "finish", cutting, height, width)
     return width * data.feed
+
+
+def _level_time(
+    state: PanelPlanState, samples: AreaSamples, height: float, tool: Tool, rows: Bools
+) -> float:
+    """Return how long in min level passes over samples (k,) take: their areas seen from the side over the steps, at the cutter's feed."""
+    up = samples.normal[rows, 2]
+    flank = max(tool.flute_length - tool.corner_radius, tool.corner_radius)
+    step = level_step(tool.corner_radius, height, up, flank)
+    cutting = choose(CuttingSettings, state.choices)
+    width = stepover_on_plane(tool.corner_radius or 0.5 * tool.radius, height)
+    data = cutting_data(tool, state.material, state.machine, "finish", cutting, height, width)
+    side = np.sqrt(np.maximum(1.0 - up * up, 0.0))
+    return float((samples.area * side / step).sum() / data.feed)
+
+
+def _tool_change(state: PanelPlanState) -> float:
+    """Return what one more tool takes in min."""
+    return state.machine.tool_change_s / SECONDS_PER_MINUTE
 
 
 def _cutters(

@@ -163,3 +163,36 @@ def with_larger_first(
     mine = cutters.by_name[best.name]
     second = CutterStep(tool=own, rows=cutters.reached & ~mine, earlier=best)
     return CutterStep(tool=best, rows=mine), second, *steps[1:]
+
+
+def with_rounder_between(
+    cutters: AreaCutters,
+    tools: Sequence[Tool],
+    time: Callable[[Tool, Bools], float],
+    change: float,
+) -> tuple[CutterStep, ...]:
+    """Return the cutters of an area in the order they cut, a rounder one before the one for the rest where both together are quicker.
+
+    What a round cutter leaves in corners another one, smaller but round too, cuts in a few passes; what it leaves at sharp feet needs a
+    corner as sharp, whose passes lie so much nearer to each other. `time` is what a cutter takes for samples (k,) in min, `change` what
+    one more tool takes.
+    """
+    steps = steps_of(cutters)
+    if len(steps) < 2:
+        return steps
+    first, rest = steps
+    best, least = None, time(rest.tool, rest.rows)
+    for tool in sorted(tools, key=lambda t: (-t.corner_radius, depth_reached(t), t.name)):
+        mine = rest.rows & cutters.by_name.get(tool.name, np.zeros_like(rest.rows))
+        if rest.tool.corner_radius < tool.corner_radius < first.tool.corner_radius and mine.any():
+            taken = time(tool, mine) + time(rest.tool, rest.rows & ~mine) + change
+            if taken < least:
+                best, least = tool, taken
+    if best is None:
+        return steps
+    mine = rest.rows & cutters.by_name[best.name]
+    between = CutterStep(tool=best, rows=mine, earlier=first.tool)
+    left = rest.rows & ~mine
+    if left.sum() <= NEGLIGIBLE * cutters.reachable.sum():
+        return first, between
+    return first, between, CutterStep(tool=rest.tool, rows=left, earlier=best)
