@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from surface_forms import cylinder, joined, plane
 from trunnion.geometry.sheet.edge_collapses import SHORT, TURN, collapsed
 from trunnion.geometry.sheet.edge_flips import OBTUSE, ROUNDS, flipped
-from trunnion.geometry.sheet.refine_sheet import split_finely
+from trunnion.geometry.sheet.refine_sheet import split_finely, split_where
 from trunnion.geometry.sheet.sheet import SMOOTH, edges_of, sheet_of
 
 
@@ -150,3 +150,33 @@ def test_long_slivers_become_even_triangles_and_no_point_leaves_the_face() -> No
     assert area == pytest.approx(plainly.area().sum(), rel=1e-4)
     from_axis = np.hypot(evenly.points[:, 1], evenly.points[:, 2])
     assert from_axis == pytest.approx(np.full(len(from_axis), 2.0), abs=2e-5)
+
+
+@given(st.integers(0, 1000), st.floats(0.05, 0.3))
+def test_wanted_edges_alone_get_short_and_neighbours_share_theirs(seed, longest) -> None:
+    sheet = sheet_of(plane(8.0, 5.0, 3), (1,))
+    at = np.random.default_rng(seed).uniform([0.0, 0.0], [8.0, 5.0])
+
+    def near(middle, length):
+        return np.hypot(*(middle[:, :2] - at).T) < 0.5 + 0.5 * length
+
+    fine = split_where(sheet, near, longest)
+    ends, side = edges_of(fine.triangles, len(fine.points))
+    a, b = fine.points[ends].transpose(1, 0, 2)
+    length, middle = np.linalg.norm(b - a, axis=1), 0.5 * (a + b)
+    # A flip may make an edge a little longer again.
+    close = np.hypot(*(middle[:, :2] - at).T) < 0.5
+    assert close.any() and length[close].max() <= 1.5 * longest
+    assert length.max() > 1.0 and len(fine.triangles) < 60.0 / longest**2
+    # No point lies on a side of a triangle that hasn't it for a corner: each side is of two triangles, or on the rim.
+    count = np.bincount(side.ravel())
+    rim = length[count == 1].sum()
+    assert count.max() == 2 and rim == pytest.approx(26.0)
+    assert fine.area().sum() == pytest.approx(40.0)
+
+
+def test_nothing_wanted_leaves_a_sheet_as_it_is() -> None:
+    sheet = sheet_of(plane(8.0, 5.0, 3), (1,))
+    same = split_where(sheet, lambda middle, length: np.zeros(len(length), dtype=bool), 0.1)
+    assert np.array_equal(same.points, sheet.points)
+    assert len(same.triangles) == len(sheet.triangles)

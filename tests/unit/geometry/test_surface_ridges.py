@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from surface_drives import DATA, driven
-from surface_forms import grid, joined, plane
+from surface_forms import cylinder, grid, joined, plane
 from trunnion.geometry.sheet.sheet import sheet_of
 from trunnion.model.motion.program import ProgramSection
 from trunnion.part.shape.exact import ExactPoints
@@ -149,6 +150,52 @@ def test_what_a_cutter_leaves_before_a_hollow_too_tight_for_it_is_another_ones_a
     # Where it stands last it is finished, and what is left goes on below it for a stepover.
     assert free < -0.1 and kept[:, :, 1].max() <= free - stepover_on_plane(3.0, HEIGHT) + 0.34
     assert kept[:, :, 1].max() > free - 1.5
+
+
+def channel(length: float, n: int = 2):
+    """A long level floor and an upright wall at its edge y = 0, both in two triangles."""
+    wall = grid(
+        lambda u, v: np.column_stack([u, 0 * u, v]),
+        lambda u, v: np.column_stack([0 * u, 0 * u + 1.0, 0 * u]),
+        np.linspace(0.0, length, n),
+        np.linspace(0.0, 40.0, n),
+        2,
+    )
+    return replace(joined(plane(length, 30.0, n=n), wall), bound=5e-4)
+
+
+@pytest.mark.parametrize("length", [60.0, 600.0])
+def test_what_is_left_of_a_long_wall_is_a_strip_at_its_foot_with_few_triangles(length) -> None:
+    # A ball of radius 3 on the floor leaves the lowest 3 mm of the wall, 600 mm long or more.
+    found, tags = remaining_of(channel(length), (2,), BALL, -9.0, HEIGHT)
+    strip = found.areas(found.of(tags)).sum()
+    assert strip == pytest.approx(length * (3.0 + stepover_on_plane(3.0, HEIGHT)), rel=0.03)
+    assert found.areas(found.face == 2).sum() + strip == pytest.approx(40.0 * length)
+    # As many as the strip's length needs, none over the wall.
+    assert len(found.triangles) < 600.0 * length
+    top = found.points[found.triangles[found.face == 2]]
+    assert top[:, :, 2].min() > 3.0 and np.ptp(top[:, :, 0], axis=1).max() > 10.0
+
+
+def test_what_hangs_over_is_left_to_leaning_tools_alone() -> None:
+    roof = grid(
+        lambda u, v: np.column_stack([u, v, 9.0 + 0 * u]),
+        lambda u, v: np.column_stack([0 * u, 0 * u, 0 * u - 1.0]),
+        np.linspace(0.0, 6.0, 7),
+        np.linspace(0.0, 4.0, 5),
+        2,
+    )
+    skin = joined(plane(), roof)
+    assert remaining_of(skin, (2,), BALL, -9.0, HEIGHT, leans=False)[1] == ()
+    assert remaining_of(skin, (2,), BALL, -9.0, HEIGHT)[1] == (2 + PART,)
+
+
+@pytest.mark.parametrize(("radius", "tags"), [(3.0, ()), (2.9, (1 + PART,))])
+def test_a_ball_as_round_as_a_hollow_leaves_nothing_of_it(radius, tags) -> None:
+    # Chords of 90 steps lie inside of the hollow by up to 0.44 um, where it is steep, too.
+    hollow = cylinder(radius, 6.0, 0.5 * math.pi - 0.001, 90, hollow=True)
+    bound = radius * (1.0 - math.cos(0.5 * math.pi / 89))
+    assert remaining_of(replace(hollow, bound=bound), (1,), BALL, -9.0, HEIGHT)[1] == tags
 
 
 def test_what_a_cutter_leaves_has_a_rim_that_passes_can_follow() -> None:

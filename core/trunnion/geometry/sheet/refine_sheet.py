@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from trunnion.findings import Refused
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.edge_collapses import collapsed
 from trunnion.geometry.sheet.edge_flips import flipped
 from trunnion.geometry.sheet.sheet import Measure, Sheet, between, edges_of
@@ -61,6 +63,87 @@ def split_finely(
     return whole.of(np.ones(len(triangles), dtype=bool))
 
 
+def split_where(
+    sheet: Sheet,
+    wanted: Callable[[Floats, Floats], Bools],
+    longest: float,
+    progress: Progress = NO_PROGRESS,
+) -> Sheet:
+    """Return the sheet with edges halved until hardly one that is `wanted` is longer than `longest`, and others that have to be for it.
+
+    `wanted` says of edges, given by their middles (k, 3) and lengths (k,), which are meant (k,). As with `split_finely` the limit falls by
+    halves, and edges are flipped at each one. Raises `Refused` when too many triangles would be needed.
+    """
+    a, b = sheet.points[sheet.edges()[0]].transpose(1, 0, 2)
+    most = float(np.linalg.norm(b - a, axis=1).max(initial=longest))
+    for stage in range(math.ceil(math.log2(most / longest)), -1, -1):
+        sheet = _split_where(sheet, wanted, longest * 2.0**stage, progress)
+        flips = flipped(sheet.points, sheet.normals, sheet.triangles, sheet.face, in_mm, progress)
+        sheet = replace(sheet, triangles=flips)
+    return sheet
+
+
+def in_mm(a: Floats, _a_normal: Floats, b: Floats, _b_normal: Floats) -> Floats:
+    """Return the lengths (k,) in mm of edges from points a to b (k, 3): the plain measure."""
+    return np.asarray(np.linalg.norm(b - a, axis=1))
+
+
+def _split_where(
+    sheet: Sheet,
+    wanted: Callable[[Floats, Floats], Bools],
+    longest: float,
+    progress: Progress,
+) -> Sheet:
+    """Return the sheet with wanted edges halved until none is longer than that, round after round.
+
+    Triangles are halved across their longest side, and neighbours go on to share theirs: before a side that isn't a triangle's longest the
+    longest is halved, and so on from triangle to triangle (Rivara's longest-edge propagation path).
+    """
+    points, normals, triangles, face = sheet.points, sheet.normals, sheet.triangles, sheet.face
+    for _ in range(ROUNDS):
+        progress.check()
+        ends, side = edges_of(triangles, len(points))
+        a, b = ends.T
+        size = in_mm(points[a], normals[a], points[b], normals[b])
+        long = np.flatnonzero(size > longest)
+        halved = np.zeros(len(ends), dtype=bool)
+        halved[long] = wanted(0.5 * (points[a[long]] + points[b[long]]), size[long])
+        if not halved.any():
+            break
+        corner = np.argmax(_ranked(size)[side], axis=1)
+        widest = side[np.arange(len(side)), corner]
+        while not halved[needed := widest[halved[side].any(axis=1)]].all():
+            halved[needed] = True
+        # A side that is the longest of all its triangles is halved now, others in a later round.
+        halved &= np.bincount(widest, minlength=len(ends)) == np.bincount(
+            side.ravel(), minlength=len(ends)
+        )
+        rows = np.flatnonzero(halved)
+        number = np.full(len(ends), -1)
+        number[rows] = len(points) + np.arange(len(rows))
+        a, b = a[rows], b[rows]
+        more = between(points[a], normals[a], points[b], normals[b], np.full(len(rows), 0.5))
+        points, normals = np.vstack([points, more[0]]), np.vstack([normals, more[1]])
+        triangles, face = _halved(triangles, face, corner, number[widest])
+        _refuse_too_many(len(triangles))
+    return Sheet(points=points, normals=normals, triangles=triangles, face=face)
+
+
+def _ranked(size: Floats) -> Ints:
+    """Return the ranks (e,) of edges by their sizes, of equal ones by their rows."""
+    rank = np.empty(len(size), np.int64)
+    rank[np.lexsort((np.arange(len(size)), size))] = np.arange(len(size))
+    return rank
+
+
+def _refuse_too_many(count: int) -> None:
+    if count > MOST_TRIANGLES:
+        raise Refused(
+            f"passes this narrow over so large an area need over {MOST_TRIANGLES} triangles: allow a higher scallop, or cut "
+            "the area in pieces"
+        )
+
+
 def _split(
     points: Floats,
     normals: Floats,
@@ -79,9 +162,7 @@ def _split(
         size = measure(
             points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]]
         )
-        rank = np.empty(len(size), np.int64)
-        rank[np.lexsort((np.arange(len(size)), size))] = np.arange(len(size))
-        corner = np.argmax(rank[side], axis=1)
+        corner = np.argmax(_ranked(size)[side], axis=1)
         widest = side[np.arange(len(side)), corner]
         done = size[widest] <= longest
         whole.append(triangles[done])
@@ -105,11 +186,7 @@ def _split(
         more = between(points[a], normals[a], points[b], normals[b], np.full(len(halved), 0.5))
         points, normals = np.vstack([points, more[0]]), np.vstack([normals, more[1]])
         triangles, face = _halved(triangles, face, corner, number[widest])
-        if len(triangles) + sum(len(w) for w in whole) > MOST_TRIANGLES:
-            raise Refused(
-                f"passes this narrow over so large an area need over {MOST_TRIANGLES} triangles: allow a higher scallop, or cut "
-                "the area in pieces"
-            )
+        _refuse_too_many(len(triangles) + sum(len(w) for w in whole))
     return points, normals, np.vstack([*whole, triangles]), np.concatenate([*tags, face])
 
 

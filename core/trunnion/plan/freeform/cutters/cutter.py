@@ -23,23 +23,26 @@ SURFACE_FORMS = ("flat", "bull", "ball", "taper", "barrel")
 def lower_side(tool: Tool, allowance: float = 0.0) -> Floats:
     """Return the lower side (p, 6) of a cutter, thicker by an allowance; its tip stays at height 0, `allowance` below the tool's own.
 
-    So the tool's tip is at the dropped height plus the allowance. Raises `Refused` for a form that surface strategies don't cut with.
+    So the tool's tip is at the dropped height plus the allowance. A negative one makes it thinner: what a surface within as much may lift
+    the cutter by, where both are as round, doesn't lift the thinner one. A corner that is smaller than that gets sharp. Raises `Refused`
+    for a form that surface strategies don't cut with.
     """
     if tool.form not in SURFACE_FORMS:
         raise Refused(
             f"{tool.name}: a {tool.form} cutter can't finish curved surfaces; choose one of {', '.join(SURFACE_FORMS)}"
         )
     a, c, r = allowance, tool.corner_radius, tool.radius
+    corner, inner = max(c + a, 0.0), r - c + min(c + a, 0.0)
     if tool.form == "taper":
         lean = math.radians(tool.taper_angle)
-        inner, foot = r - c, r - c + c * math.cos(lean)
+        foot = r - c + c * math.cos(lean)
         top = foot + math.tan(lean) * (tool.flute_length - c * (1.0 - math.sin(lean)))
-        rows = [_level(inner), _arc(inner, inner + (c + a) * math.cos(lean), inner, c + a, c + a)]
+        rows = [_level(inner), _arc(inner, inner + corner * math.cos(lean), inner, corner, corner)]
         rows.append(
             _line(
-                inner + (c + a) * math.cos(lean),
+                inner + corner * math.cos(lean),
                 top + a * math.cos(lean),
-                (c + a) * (1.0 - math.sin(lean)),
+                corner * (1.0 - math.sin(lean)),
                 1.0 / math.tan(lean),
             )
         )
@@ -51,7 +54,7 @@ def lower_side(tool: Tool, allowance: float = 0.0) -> Floats:
             _arc(contact * (c + a) / c, r + a, centre, height + a, big + a),
         ]
     else:
-        rows = [_level(r - c), _arc(r - c, r + a, r - c, c + a, c + a)]
+        rows = [_level(inner), _arc(inner, r + a, inner, corner, corner)]
     return np.array([row for row in rows if row[1] > row[0]])
 
 

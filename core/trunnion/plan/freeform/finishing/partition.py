@@ -4,14 +4,15 @@ through triangles that are parted along it, and narrow necks and bays are filled
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.plane.region import Region
-from trunnion.geometry.sheet.refine_sheet import split_finely
+from trunnion.geometry.sheet.refine_sheet import in_mm, split_finely, split_where
 from trunnion.geometry.sheet.sheet import Sheet, edges_of, sheet_of
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.progress import NO_PROGRESS, Progress
@@ -21,6 +22,10 @@ FILLED = 1.0
 rounder."""
 FINENESS = 0.5
 """Of that width: the longest edge of the triangles that the rim is drawn through."""
+COARSER = 4.0
+"""By how much edges get shorter in each step down to that."""
+DENSE = 0.5
+"""Of a triangle's longest side: how far any place of it is at most from one that is queried."""
 NEAR_END = 0.05
 """Share of an edge: how near its ends the rim crosses it at most."""
 BETWEEN = 0.25
@@ -59,14 +64,11 @@ def parted_near(
         near = rows
     face = skin.face.copy()
     face[near] += PART
-    fine = progress.aside(
-        lambda own: split_finely(
-            sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near]))),
-            _length,
-            longest or FINENESS * around,
-            own,
-        )
-    )
+    whole = sheet_of(replace(skin, face=face), tuple(int(t) for t in np.unique(face[near])))
+    if longest > 0.0:
+        fine = progress.aside(lambda own: split_finely(whole, in_mm, longest, own))
+    else:
+        fine = _fine_at_rim(whole, over, around, progress)
     above = over(fine.points, fine.normals)
     if everywhere and not (above > 0.0).any():
         return skin, ()
@@ -89,12 +91,70 @@ def parted_within(skin: Skin, tags: tuple[int, ...], area: Region) -> tuple[Skin
     mine = np.isin(face, crossing)
     face[mine] += PART
     fine = split_finely(
-        sheet_of(replace(skin, face=face), tuple(t + PART for t in some)), _length, WITHIN
+        sheet_of(replace(skin, face=face), tuple(t + PART for t in some)), in_mm, WITHIN
     )
     inside, beyond = _cut(fine, area.signed_distance(fine.points[:, :2]))
     found = _with_parts(skin, np.flatnonzero(~mine), inside, beyond)
     parts = tuple(int(t) for t in np.unique(inside.face))
     return found, (*(t for t in tags if t not in some), *parts)
+
+
+def _fine_at_rim(
+    sheet: Sheet, over: Callable[[Floats, Floats], Floats], around: float, progress: Progress
+) -> Sheet:
+    """Return a sheet with fine triangles where the rim `around` certain places may be: what is all certain stays as it is, and so does what
+    none is near.
+
+    Triangles get there by steps, each of which knows better than the one before where that is: walls are long, what is left at their foot
+    is narrow.
+    """
+    reach, finest = (1.0 + FILLED) * around, FINENESS * around
+    step = float(_lengths(sheet).max(initial=finest))
+    while step > finest:
+        position, normal, _ = progress.aside(partial(_positions_on, sheet), "Parting the faces")
+        certain = over(position, normal) > 0.0
+        if not certain.any() or certain.all():
+            break
+        before, step = step, max(step / COARSER, finest)
+        near = _NearRim(
+            cKDTree(position[certain]), cKDTree(position[~certain]), reach, DENSE * before
+        )
+        sheet = progress.aside(partial(split_where, sheet, near.holds, step))
+    return sheet
+
+
+def _positions_on(sheet: Sheet, _: Progress) -> tuple[Floats, Floats, Ints]:
+    """Return `_positions` of all triangles of a sheet."""
+    return _positions(sheet, np.arange(len(sheet.triangles)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _NearRim:
+    """Positions on faces that are certain places and such as are none, how far in mm from the former a rim may be, and how dense they are:
+    the distance in mm from any place to the next of them."""
+
+    certain: cKDTree
+    other: cKDTree
+    reach: float
+    dense: float
+
+    def holds(self, middle: Floats, length: Floats) -> Bools:
+        """Return which edges (k,), given by their middles (k, 3) and lengths (k,), may be near a rim."""
+        wide = self.dense + 0.5 * length
+        inside, outside = (
+            tree.query(
+                middle, distance_upper_bound=float(np.nextafter(limit.max(initial=0.0), np.inf))
+            )[0]
+            <= limit
+            for tree, limit in ((self.certain, self.reach + wide), (self.other, wide))
+        )
+        return np.asarray(inside & outside)
+
+
+def _lengths(sheet: Sheet) -> Floats:
+    """Return the lengths (e,) in mm of a sheet's edges."""
+    a, b = sheet.points[sheet.edges()[0]].transpose(1, 0, 2)
+    return np.asarray(np.linalg.norm(b - a, axis=1))
 
 
 def _with_parts(skin: Skin, kept: Ints, inside: Sheet, outside: Sheet) -> Skin:
@@ -135,7 +195,7 @@ def _distance(sheet: Sheet, value: Floats, most: float) -> Floats:
     if not above.any():
         return np.full(len(value), np.inf)
     ends = sheet.edges()[0]
-    longest = float(np.linalg.norm(np.diff(sheet.points[ends], axis=1)[:, 0], axis=1).max())
+    longest = float(_lengths(sheet).max())
     ends = ends[above[ends[:, 0]] != above[ends[:, 1]]]
     border = sheet.on_edges(ends, _crossing(value, ends))[0]
     tree = cKDTree(np.concatenate([sheet.points[above], border]))
@@ -166,11 +226,7 @@ def _cut(sheet: Sheet, inside: Floats) -> tuple[Sheet, Sheet]:
     return parted.of(within), parted.of(~within)
 
 
-def _length(a: Floats, a_normal: Floats, b: Floats, b_normal: Floats) -> Floats:
-    return np.asarray(np.linalg.norm(b - a, axis=1))
-
-
-def _positions(skin: Skin, rows: Ints) -> tuple[Floats, Floats, Ints]:
+def _positions(skin: Skin | Sheet, rows: Ints) -> tuple[Floats, Floats, Ints]:
     """Return positions (p, 3) on triangles, the faces' unit normals there, and which of them (k, 7) are the corners, the middles of the
     sides and the middle of each triangle: what a cutter leaves beside a rim may be narrower than a triangle."""
     used, corners = np.unique(skin.triangles[rows], return_inverse=True)

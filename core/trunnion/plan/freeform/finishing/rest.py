@@ -22,6 +22,8 @@ LIFTED = 0.5 * tolerance.GOUGE
 """mm: a cutter that other faces lift by no more than this still reaches a position."""
 UNSEEN = 0.1
 """Of the scallop height: a cutter that is lifted by no more than this finishes a position."""
+UPRIGHT = -math.sin(tolerance.ANGLE)
+"""Least height of a unit normal of a face that an upright cutter touches: upright walls are among them."""
 AROUND = 0.3
 """mm at least that an area goes on past what was left, so that no seam stays; as far as passes are apart where that is more."""
 LAP = 3.0
@@ -31,6 +33,8 @@ MET, MOST = 1.5, 20_000
 QUERY_SPACING, DOUBT = 1.0, 1.5
 """mm: one position of each cube of this width, and of each side that faces turn there, is queried first; and by how much wider and lower
 shank and holder are taken then, for its neighbours' sake."""
+SHOWN = 1.0
+"""mm: what shank and holder are clear of by more counts no better, and what they are in by more no worse."""
 HOLDER_CLEARANCE = 0.2
 """mm that shank and holder keep from adjacent walls."""
 
@@ -42,10 +46,12 @@ def remaining_of(
     lowest: float,
     height: float,
     progress: Progress = NO_PROGRESS,
+    leans: bool = True,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
-    in mm that is wanted."""
-    over = _lifted_over(skin, earlier, lowest, height, progress)
+    in mm that is wanted. What hangs over it leaves to a tool that `leans`; another upright one comes no better to it."""
+    under = np.inf if leans else -np.inf
+    over = _lifted_over(skin, earlier, lowest, height, under, progress)
     return parted_near(skin, tags, over, _past(earlier, height), progress=progress)
 
 
@@ -61,7 +67,7 @@ def remaining_upright(
     """Return the skin with what an upright cutter can't come to on faces given tags of its own, and those tags: where other faces lift it,
     what hangs over, and where its neck, shank or holder would meet the part, or a `thickness` (mm) left on faces that hang over."""
     lifted, met = (
-        _lifted_over(skin, earlier, lowest, height, progress),
+        _lifted_over(skin, earlier, lowest, height, np.inf, progress),
         _met_over(skin, earlier, lowest, thickness, progress),
     )
 
@@ -78,16 +84,24 @@ def _past(tool: Tool, height: float) -> float:
 
 
 def _lifted_over(
-    skin: Skin, tool: Tool, lowest: float, height: float, progress: Progress
+    skin: Skin, tool: Tool, lowest: float, height: float, under: float, progress: Progress
 ) -> Callable[[Floats, Floats], Floats]:
-    """Return how far (p,) mm an upright cutter is lifted off positions (p, 3) with normals (p, 3) past what nobody sees."""
-    limit = min(UNSEEN * height, LIFTED)
+    """Return how far (p,) mm an upright cutter is lifted off positions (p, 3) with normals (p, 3) past what nobody sees; `under` is said
+    of those that hang over.
+
+    A cutter as round as a hollow that it lies in, or between walls as far apart as it is wide, touches it everywhere: triangles, which are
+    a little off the faces, would lift it by much where they are steep. So it is taken thinner by as much.
+    """
+    limit, thinner = min(UNSEEN * height, LIFTED), -2.0 * skin.bound
 
     def over(position: Floats, normal: Floats) -> Floats:
-        lift = np.full(len(position), np.inf)
-        up = normal[:, 2] > 0.0
-        tip = upright_tips(skin, position[up], normal[up], tool)
-        top = skin.drop.drop(tip[:, :2], lower_side(tool), lowest, progress)
+        lift = np.full(len(position), under)
+        up = normal[:, 2] > UPRIGHT
+        axis = np.tile([0.0, 0.0, 1.0], (int(up.sum()), 1))
+        tip = tip_at(tool, position[up], normal[up], axis)
+        # It touches at its own position at least: nothing that is lower by more than triangles are off has to be looked at.
+        floor = np.maximum(tip[:, 2] + 2.0 * thinner, lowest)
+        top = skin.drop.drop(tip[:, :2], lower_side(tool, thinner), floor, progress) + thinner
         lift[up] = top - tip[:, 2] - limit
         return lift
 
@@ -129,7 +143,8 @@ def _met_over(
     skin: Skin, tool: Tool, lowest: float, thickness: float, progress: Progress
 ) -> Callable[..., Floats]:
     """Return how deep (p,) mm shank or holder of an upright tool are in the part at positions (p, 3) with normals (p, 3), all taken wider
-    and lower by `more`; where they are not, at most nothing: -inf where an upright tool doesn't touch or nothing stands beside it.
+    and lower by `more`; where they are not, at most nothing: -inf where an upright tool doesn't touch or nothing stands beside it, else no
+    more than `SHOWN` to either side.
 
     What is no wider than the cutter goes where it has been, but under faces that hang over: there it meets a `thickness` (mm) left on them.
     """
@@ -140,7 +155,7 @@ def _met_over(
 
     def over(position: Floats, normal: Floats, more: float = 0.0) -> Floats:
         met = np.full(len(position), -np.inf)
-        up = normal[:, 2] > -math.sin(tolerance.ANGLE)
+        up = normal[:, 2] > UPRIGHT
         tip = upright_tips(skin, position[up], normal[up], tool)
         # How high the tip must be for all of the tool to be above what stands beside it.
         free = np.full(len(tip), -np.inf)
@@ -149,14 +164,15 @@ def _met_over(
                 low = np.flatnonzero(tip[:, 2] + z - more < highest)
                 if surface is not None and len(low):
                     disc = level_disc(radius + around + HOLDER_CLEARANCE + more)
-                    wall_top = surface.drop(tip[low, :2], disc, lowest, progress)
+                    floor = np.maximum(tip[low, 2] + z - more - SHOWN, lowest)
+                    wall_top = surface.drop(tip[low, :2], disc, floor, progress)
                     free[low] = np.maximum(free[low], wall_top - z + more)
         deepest = free - tip[:, 2]
         # The part may lift the tip above its position: that needs a look only where it would be too low.
         doubtful = np.flatnonzero(deepest > 0.0)
         top = skin.drop.drop(tip[doubtful, :2], lower_side(tool), lowest, progress)
         deepest[doubtful] = np.minimum(deepest[doubtful], free[doubtful] - top)
-        met[up] = deepest
+        met[up] = np.where(deepest > -np.inf, np.clip(deepest, -SHOWN, SHOWN), -np.inf)
         return met
 
     return over
