@@ -138,7 +138,8 @@ class SurfaceSpace:
         if within is not None:
             skin, faces = parted_within(skin, faces, within)
         if earlier is not None and not needs.finds_rest:
-            skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress, needs.leans)
+            own = None if needs.leans else operation.cutter
+            skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress, own)
         if upright is not None:
             skin, faces = remaining_upright(
                 skin, faces, upright, lowest, height, thickness, progress

@@ -24,6 +24,8 @@ FINENESS = 0.5
 """Of that width: the longest edge of the triangles that the rim is drawn through."""
 COARSER = 4.0
 """By how much edges get shorter in each step down to that."""
+ENOUGH = 50_000
+"""Triangles of faces whose rim is looked for: with more of them they get no finer, and the rim is as exact as they are."""
 DENSE = 0.5
 """Of a triangle's longest side: how far any place of it is at most from one that is queried."""
 NEAR_END = 0.05
@@ -110,7 +112,7 @@ def _fine_at_rim(
     """
     reach, finest = (1.0 + FILLED) * around, FINENESS * around
     step = float(_lengths(sheet).max(initial=finest))
-    while step > finest:
+    while step > finest and len(sheet.triangles) < ENOUGH:
         position, normal, _ = progress.aside(partial(_positions_on, sheet), "Parting the faces")
         certain = over(position, normal) > 0.0
         if not certain.any() or certain.all():

@@ -46,12 +46,22 @@ def remaining_of(
     lowest: float,
     height: float,
     progress: Progress = NO_PROGRESS,
-    leans: bool = True,
+    upright: Tool | None = None,
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
-    in mm that is wanted. What hangs over it leaves to a tool that `leans`; another upright one comes no better to it."""
-    under = np.inf if leans else -np.inf
-    over = _lifted_over(skin, earlier, lowest, height, under, progress)
+    in mm that is wanted. Of that another `upright` one gets what it isn't lifted off too, a leaning one (None) what hangs over as well."""
+    over = lifted = _lifted_over(
+        skin, earlier, lowest, height, np.inf if upright is None else -np.inf, progress
+    )
+    if upright is not None:
+        again = _lifted_over(skin, upright, lowest, math.inf, np.inf, progress)
+
+        def over(position: Floats, normal: Floats) -> Floats:
+            lift = lifted(position, normal)
+            rows = np.flatnonzero(lift > 0.0)
+            lift[rows] = np.minimum(lift[rows], -again(position[rows], normal[rows]))
+            return lift
+
     return parted_near(skin, tags, over, _past(earlier, height), progress=progress)
 
 
