@@ -219,6 +219,7 @@ def test_upright_walls_beside_leaning_ones_are_cut_on_levels_of_their_own() -> N
     skin = joined(upright, replace(leaning, points=leaning.points + [90.0, 0.0, 0.0]))
     tips = cut_tips(planned(skin, FLAT, faces=(1, 3), chord=0.005)[0].path)
     near = tips[:, 0] < 60.0
+    assert np.flatnonzero(near).max() < np.flatnonzero(~near).min(), "upright ones come first"
     assert np.unique(tips[near, 2]).tolist() == [0.0]
     levels = np.unique(tips[~near, 2].round(6))
     assert len(levels) == pytest.approx(4.0 * math.sin(0.3) / 0.01, abs=2)

@@ -75,7 +75,8 @@ def with_levels(
     """Return the triangles with their levels: those of leaning faces and those of upright ones on levels of their own where that saves
     more than the passes cost that end where the two meet.
 
-    The flank of a cutter finishes an upright wall over all its flutes, a leaning one it leaves steps on.
+    The flank of a cutter finishes an upright wall over all its flutes, a leaning one it leaves steps on. Upright ones come first: what
+    stands on them would meet the neck of a cutter that goes down a leaning wall beside them, which itself is wider the higher it is.
     """
     together = WallLevels(slopes, _levels(slopes, feet, tool, height, step))
     upright = slopes.normal[:, 2] <= -UPWARD
@@ -83,10 +84,10 @@ def with_levels(
         return [together]
     apart = [
         WallLevels(some, _levels(some, feet[which], tool, height, step))
-        for which in (~upright, upright)
+        for which in (upright, ~upright)
         for some in (slopes.some(which),)
     ]
-    ends = OPEN * len(apart[0].levels)
+    ends = OPEN * len(apart[1].levels)
     return apart if _run(together) > sum(_run(w) for w in apart) + ends else [together]
 
 
