@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from milling import mill
 from samples import read
+from shaped_parts import bowl
 from surface_drives import grid, joined
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.plane.region import Region
@@ -212,6 +213,16 @@ def test_a_ball_reaches_a_trough_that_is_wider_than_it_and_no_other():
     space, places = block(trough), samples_on(trough, (1,), 300)
     assert reached(space, places, BALL_4, 1.0).mean() > 0.9
     assert reached(space, places, BALL_6, 1.0).mean() < 0.1
+
+
+def test_a_ball_as_round_as_a_bowl_has_no_way_to_go_in_it():
+    part = bowl(20.0, 16.0, 8.0, 3.0)
+    hollow = next(t for t in part.tags if part.graph().surface[t - 1] == "sphere")
+    space = block(skin_of(part, WORLD, 0.0025))
+    places = samples_on(space.skin, (hollow,), 300)
+    # The one as round as the bowl touches all of it from its middle.
+    assert reached(space, places, BALL_6, 1.0).mean() < 0.5
+    assert reached(space, places, BALL_4, 1.0).mean() > 0.9
 
 
 def test_a_holder_that_would_touch_a_wall_keeps_a_cutter_out():

@@ -89,13 +89,12 @@ def reached(
     found = leans(samples) < steepest
     rows = np.flatnonzero(found)
     axis = np.tile([0.0, 0.0, 1.0], (len(rows), 1))
-    tip = tip_at(
-        tool, samples.point[rows] + allowance * samples.normal[rows], samples.normal[rows], axis
-    )
-    # Triangles may be a little off the faces: beside steep ones that lifts a cutter far, but not one that is thinner by as much.
-    thicker = allowance - 2.0 * space.skin.bound
+    # Off the face by twice what its triangles may be too high: beside steep faces a little of that lifts a cutter far. The cutter stays as
+    # thick as it is: one as round as a bowl touches it everywhere from one place, and has no way to go in it.
+    off = allowance + 2.0 * space.skin.bound
+    tip = tip_at(tool, samples.point[rows] + off * samples.normal[rows], samples.normal[rows], axis)
     plan, lowest = tip[:, :2], float(space.low[2]) - space.setup.clearance - tool.gauge_length
-    top = space.skin.drop.drop(plan, lower_side(tool, thicker), lowest, progress) + thicker
+    top = space.skin.drop.drop(plan, lower_side(tool, allowance), lowest, progress) + allowance
     highest = float(space.skin.points[:, 2].max())
     clear = (top - tip[:, 2] < LIFTED) & (tip[:, 2] > space.low[2] - tolerance.SEW)
     for z0, r0, _, r1 in tool.profile():
