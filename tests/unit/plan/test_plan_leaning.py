@@ -16,7 +16,7 @@ from trunnion.model.session import Session
 from trunnion.pipeline import Engine
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.panel.feasibility import plannable
-from trunnion.plan.panel.freeform_pocket import FreeformPocket
+from trunnion.plan.panel.freeform.pocket import FreeformPocket
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.progress import NO_PROGRESS
 

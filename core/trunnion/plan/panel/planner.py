@@ -14,8 +14,8 @@ from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
-from trunnion.plan.panel.freeform_drives import freeform_drive, pocket_of
-from trunnion.plan.panel.leaning_settings import LeaningSettings
+from trunnion.plan.panel.freeform.drives import freeform_drive, pocket_of
+from trunnion.plan.panel.freeform.settings import LeaningSettings
 from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.rules import TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings

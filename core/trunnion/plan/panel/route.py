@@ -38,8 +38,7 @@ from trunnion.plan.panel.feasibility import (
     plannable,
     without_lonely_ribs,
 )
-from trunnion.plan.panel.freeform_tasks import NEEDED
-from trunnion.plan.panel.rules import TASK_MAKERS
+from trunnion.plan.panel.rules import NEEDED, TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.panel.sides import shared_out
 from trunnion.plan.panel.tasks import (

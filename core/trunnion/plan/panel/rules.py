@@ -2,9 +2,32 @@
 
 from __future__ import annotations
 
-from trunnion.plan.panel.freeform_tasks import FREEFORM_TASK_MAKERS
-from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
-from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS
+from collections.abc import Callable, Mapping, Sequence
 
+from trunnion.model.feature import Feature
+from trunnion.plan.panel.freeform.finishing_tasks import (
+    curved_floor_tasks,
+    curved_semi_tasks,
+    floor_tasks,
+    side_tasks,
+)
+from trunnion.plan.panel.freeform.roughing_tasks import layer_tasks, rest_layer_tasks
+from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
+from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, OperationTask, PanelPlanState
+from trunnion.shop import Stage
+
+FREEFORM_TASK_MAKERS: Mapping[
+    str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]
+] = {
+    "layers": layer_tasks,
+    "rest_layers": rest_layer_tasks,
+    "leaning_floor": floor_tasks,
+    "sides": side_tasks,
+    "curved_semi": curved_semi_tasks,
+    "curved_floor": curved_floor_tasks,
+}
+"""The rule behind each word that a typical plan gives for the cutter of a stage on leaning walls and curved floors."""
+NEEDED = frozenset({"layers", "sides"})
+"""Rules without which a typical plan knows no leaning walls."""
 TASK_MAKERS = {**PLANE_TASK_MAKERS, **FREEFORM_TASK_MAKERS, **HOLE_TASK_MAKERS}
 """The rule behind each word that a typical plan gives for its cutter."""

@@ -11,7 +11,7 @@ from trunnion.plan.freeform.keys import ALLOWANCE, CELL, number
 from trunnion.plan.freeform.roughing.layers import pocket_layers
 from trunnion.plan.freeform.surface_drives import space_from
 from trunnion.plan.panel.feasibility import adjacent
-from trunnion.plan.panel.freeform_pocket import FreeformPocket
+from trunnion.plan.panel.freeform.pocket import FreeformPocket
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.progress import Progress

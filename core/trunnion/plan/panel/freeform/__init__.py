@@ -1,0 +1,1 @@
+"""Pockets with leaning walls or curved floors: their areas, and the operations that clear and finish them."""

@@ -1,0 +1,124 @@
+"""The operations that clear freeform pockets: layers, and layers with a smaller cutter in corners."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from trunnion.model.feature import Feature
+from trunnion.model.tool import Tool
+from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
+from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL
+from trunnion.plan.panel.freeform.planning import (
+    FreeformPlanning,
+    kept_off,
+    layer_height,
+    pocket_task,
+    pockets_of,
+)
+from trunnion.plan.panel.freeform.pocket import FreeformPocket
+from trunnion.plan.panel.tasks import (
+    NEAR_ROUGH,
+    NEAR_WALL,
+    SHARP,
+    SPARE,
+    OperationTask,
+    PanelPlanState,
+    catalogue,
+)
+from trunnion.plan.prismatic.regions import number
+from trunnion.plan.tool_choice import ToolRequirement, fits_through
+from trunnion.settings import choose
+from trunnion.shop import Stage
+
+
+def layer_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    found = []
+    for known, pocket in pockets_of(state, stage, features):
+        requirement = _rough_requirement(state, known, pocket)
+        if pocket.feature.kind == "open_pocket" or not any(
+            requirement.envelope_area.offset(-SPARE * t.radius) for t in catalogue(state, stage)
+        ):
+            requirement = replace(requirement, spare=1.0)
+        found.append(_layers(state, stage, known, pocket, requirement, stage.kind))
+    return found
+
+
+def rest_layer_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    """Ask for layers with a cutter that comes through the corners, where the first one is too large for these."""
+    found = []
+    for known, pocket in pockets_of(state, stage, features):
+        before = state.tools.get(f"rough-{pocket.feature.id}")
+        if before is None:
+            continue
+        corner = number(pocket.feature, "corner_radius") * state.settings.corner_share
+        requirement = replace(
+            _rough_requirement(state, known, pocket),
+            radius=corner,
+            missable=SHARP,
+            spare=1.0,
+            near=NEAR_WALL,
+        )
+        is_through = fits_through(replace(requirement, radius=0.0), before, catalogue(state, stage))
+        if is_through and not 0.0 < corner < before.radius:
+            continue
+        found.append(_layers(state, stage, known, pocket, requirement, "rest"))
+    return found
+
+
+def _rough_requirement(
+    state: PanelPlanState, known: FreeformPlanning, pocket: FreeformPocket
+) -> ToolRequirement:
+    """Return what a roughing cutter of a pocket has to fit: its floors, kept off its sides by what layers leave there."""
+    kept = pocket.layer_area().remaining(known.settings.cell, state.settings.floor_allowance)
+    _, levels = pocket.floors()
+    areas = [(kept_off(v.boundary, kept), kept_off(v.wanted, kept)) for v in levels]
+    if not areas:
+        areas = [(kept_off(pocket.mouth, kept), kept_off(pocket.mouth, kept))]
+    envelope_area, wanted = areas[-1]
+    return ToolRequirement(
+        depth=state.space.top - pocket.bottom,
+        envelope_area=envelope_area,
+        wanted=wanted,
+        corner_radius=pocket.fillet,
+        missable=state.settings.missable,
+        spare=SPARE,
+        near=NEAR_ROUGH,
+        others=tuple(areas[:-1]),
+    )
+
+
+def _layers(
+    state: PanelPlanState,
+    stage: Stage,
+    known: FreeformPlanning,
+    pocket: FreeformPocket,
+    requirement: ToolRequirement,
+    name: str,
+) -> OperationTask:
+    settings, cutting = known.settings, choose(CuttingSettings, {})
+    layer = layer_height(pocket, settings)
+
+    def engagement(tool: Tool) -> tuple[float, float]:
+        depth = roughing_depth(tool, state.material, cutting)
+        return min(depth, layer), roughing_width(tool, state.material, cutting)
+
+    return pocket_task(
+        state,
+        stage,
+        pocket,
+        f"{name}-{pocket.feature.id}",
+        requirement,
+        (),
+        {
+            ALLOWANCE: state.settings.floor_allowance,
+            # Lower than the lowest floor's allowance only holes in it are free.
+            BOTTOM: pocket.bottom + (0.0 if pocket.curved else state.settings.floor_allowance),
+            CELL: settings.cell,
+        },
+        engagement,
+    )
