@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import cache
 from typing import Any
 
@@ -95,6 +96,9 @@ def test_a_wall_that_leans_over_is_named_with_its_faces_and_left() -> None:
     (hanging,) = pocket.feature.with_role("inner_convergence")
     (told,) = not_planned("over")
     assert {"pocket-01", f"face {hanging}"} <= set(told.where)
+    # Its corners lean over with it.
+    area = float(routed("over")[0].context.part.graph().area[hanging - 1])
+    assert area <= float(re.search(r"([\d.]+) mm2", told.text)[1]) < 4.0 * area
     assert all(hanging not in o.faces for o in operations("over").values())
 
 

@@ -120,7 +120,7 @@ def report_unreached(
     """Tell which sides no upright cutter comes to: what leans over, and what lies under it."""
     seen = {int(t): cutters.reachable[samples.face == t] for t in np.unique(samples.face)}
     lost = [t for t, rows in seen.items() if not rows.all()]
-    area = samples.area * float((cutters.reachable).sum())
+    area = samples.area * float((~cutters.reachable).sum())
     if area < WORTH_NAMING or not lost:
         return
     state.findings.append(
