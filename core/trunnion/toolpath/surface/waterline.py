@@ -35,6 +35,7 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
 )
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import thinned
+from trunnion.toolpath.contact_passes.upright.wall_foot import foot_passes
 from trunnion.toolpath.contact_passes.upright.wall_levels import UPWARD, lowest_tips, with_levels
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
@@ -153,8 +154,14 @@ def waterline(
     passes: list[Pass] = []
     for n, wall in enumerate(walls):
         share = progress.part(0.1 + 0.7 * n / len(walls), 0.1 + 0.7 * (n + 1) / len(walls))
-        loops = _loops(wall.levels, wall.slopes, drive, tool, settings, share)
-        passes += _in_order(loops, tool, both=settings.way == "both")
+        area = _AreaTips.of(wall.slopes, tool)
+        loops = _loops(wall.levels, area, drive, tool, settings, share.part(0.0, 0.9))
+        made = _in_order(loops, tool, both=settings.way == "both")
+        passes += made
+        if (wall.slopes.normal[:, 2] <= -UPWARD).any():
+            passes += foot_passes(
+                made, wall.levels, area.has, drive, tool, settings.chord, share.part(0.9, 1.0)
+            )
     if not passes:
         nothing = warning(
             "surface.out-of-reach",
@@ -253,9 +260,32 @@ class _Loop:
     closed: bool
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _AreaTips:
+    """Tips (k, 3) that touch the area, as dense as the cells (mm) of the grid that level lines are marched on."""
+
+    tips: Floats
+    tree: cKDTree
+    cell: float
+
+    @staticmethod
+    def of(slopes: FacetSlopes, tool: Tool) -> _AreaTips:
+        """Return the tips of a tool that touches triangles."""
+        cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
+        tips = spread(slopes.tips, cell)
+        return _AreaTips(tips, cKDTree(tips), cell)
+
+    def has(self, tips: Floats, distance: float = NEARBY) -> Bools:
+        """Return which tips (n, 3) are no farther than a distance in cells from those that touch the area."""
+        # With a bound the tree looks at what is near alone: far positions would be the slow ones.
+        most = distance * self.cell
+        found = self.tree.query(tips, distance_upper_bound=np.nextafter(most, np.inf))[0]
+        return np.asarray(found <= most)
+
+
 def _loops(
     levels: Floats,
-    slopes: FacetSlopes,
+    area: _AreaTips,
     drive: SurfaceDrive,
     tool: Tool,
     settings: WaterlineSettings,
@@ -263,28 +293,31 @@ def _loops(
 ) -> list[_Loop]:
     """Return the passes where the cutter touches the area, lowest first, the material on their right."""
     # Drop cutter on a grid: the level lines of its heights are the waterlines, to a cell.
-    cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
+    cell = area.cell
     blocked = _Blocked(
         drive=drive,
         pieces=lower_side(tool, drive.allowance),
         lowest=float(drive.low[2]) - tool.flute_length,
         progress=progress,
     )
-    # Tips are compared as drops put them, without the allowance that lifts the tool.
-    tips = spread(slopes.tips, cell) - drive.allowance * UPRIGHT
+    # Heights are compared as drops put them, without the allowance that lifts the tool.
     levels = levels - drive.allowance
-    grid = grid_around(tips, cell, MARGIN)
+    grid = grid_around(area.tips, cell, MARGIN)
     heights = blocked.heights(grid.points[:, :2])
     knots = np.concatenate([levels[:1] - 1.0, levels + tolerance.COINCIDENT, levels[-1:] + 1.0])
     numbers = np.concatenate([[-0.5], np.arange(len(levels)), [len(levels) - 0.5]])
-    near, radius = cKDTree(tips), tool.radius + drive.allowance
+    radius = tool.radius + drive.allowance
+
+    def near(plan: Floats, z: float, distance: float) -> Bools:
+        return area.has(np.column_stack([plan, np.full(len(plan), z + drive.allowance)]), distance)
+
     found: list[tuple[SheetLine, Ints, bool]] = []
     # March the level lines; `numbers` maps heights so that all levels are whole numbers of one field.
     for line in whole_levels(grid, np.interp(heights, knots, numbers)):
         progress.check()
         line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
         plan = line.value(grid.points)[:, :2]
-        near_area = _near(near, plan, float(levels[line.level]), ROUGHLY * cell)
+        near_area = near(plan, float(levels[line.level]), ROUGHLY)
         # So far only roughly, and over gaps in which an edge may be rolled round.
         gap = 2.0 * settings.overlap + math.pi * radius
         found += [
@@ -310,9 +343,7 @@ def _loops(
     lines = []
     for loop, (line, _, closed) in zip(split, found, strict=True):
         z = float(levels[line.level])
-        for rows, whole in _pieces(
-            loop, _near(near, loop, z, NEARBY * cell), closed, settings.overlap, radius
-        ):
+        for rows, whole in _pieces(loop, near(loop, z, NEARBY), closed, settings.overlap, radius):
             rows = rows[np.append(True, np.hypot(*np.diff(loop[rows], axis=0).T) > CLOSE)]
             if len(rows) > 1:
                 lines.append(_Loop(plan=loop[rows], z=z, level=line.level, closed=whole))
@@ -321,14 +352,6 @@ def _loops(
         replace(line, plan=loop, z=line.z + drive.allowance)
         for line, loop in zip(lines, refined, strict=True)
     ]
-
-
-def _near(tips: cKDTree, plan: Floats, z: float, distance: float) -> Bools:
-    """Return which tips at plan points (n, 2) and a height are no farther than a distance from those that touch the area (n,)."""
-    at = np.column_stack([plan, np.full(len(plan), z)])
-    # With a bound the tree looks at what is near alone: far positions would be the slow ones.
-    found = tips.query(at, distance_upper_bound=np.nextafter(distance, np.inf))[0]
-    return np.asarray(found <= distance)
 
 
 def _pieces(

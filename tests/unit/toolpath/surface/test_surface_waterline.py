@@ -237,3 +237,44 @@ def test_a_pass_past_a_short_area_does_not_go_on_round_the_boss() -> None:
     angle = np.abs(np.arctan2(tips[:, 1] - 15.0, tips[:, 0] - 15.0))
     # Half a millimetre past the area and no more than a tip's width of the search.
     assert half <= angle.max() <= half + 0.5 / 17.0 + 0.1
+
+
+def arched(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """A floor that rises by 1 mm to y = 15 along x."""
+    return 1.0 - (y - 15.0) ** 2 / 225.0
+
+
+def arched_wall(n: int = 60) -> Skin:
+    """Return an upright wall at x = 20, facing low x, from an arched floor up to z = 10: two triangles for each step of its foot."""
+    y = np.linspace(0.0, 30.0, n + 1)
+    points = np.vstack(
+        [
+            np.column_stack([np.full(n + 1, 20.0), y, z])
+            for z in (arched(20.0, y), np.full(n + 1, 10.0))
+        ]
+    )
+    a = np.arange(n)
+    return Skin(
+        points=points,
+        normals=np.tile([-1.0, 0.0, 0.0], (len(points), 1)),
+        triangles=np.vstack(
+            [np.column_stack([a, a + n + 1, a + 1]), np.column_stack([a + 1, a + n + 1, a + n + 2])]
+        ),
+        face=np.ones(2 * n, dtype=np.int64),
+        bound=0.0,
+    )
+
+
+def test_the_foot_of_an_upright_wall_is_followed_where_the_floor_rises_along_it() -> None:
+    tool = bull(6.0, 0.5)(flute=8.0)
+    floor = grid(arched, n=120, low=(0.0, -5.0), high=(20.0, 35.0), tag=3)
+    made, drive = planned(joined(arched_wall(), floor), tool, chord=0.002)
+    tips = cut_tips(made.path)
+    # Off the wall by as much as chords may be off, in one pass.
+    mine = tips[(tips[:, 0] < 16.999) & (tips[:, 0] > 16.99)]
+    y = np.linspace(2.0, 28.0, 45)
+    rests = drive.skin.drop.drop(np.column_stack([np.full(45, 16.99), y]), lower_side(tool), -9.0)
+    line = mine[np.argsort(mine[:, 1])]
+    assert np.abs(np.interp(y, line[:, 1], line[:, 2]) - rests).max() < 0.005
+    assert len(np.unique(tips[:, 2])) < 60 and len(tips) < 100
+    assert (tips[:, 2] - drive.skin.drop.drop(tips[:, :2], lower_side(tool), -9.0)).min() > -1e-3

@@ -25,9 +25,8 @@ BELOW_TOP = 0.1
 """Of a step: how far the last level lies below the highest position."""
 FLANK = 0.8
 """Of the flutes' length over the corner: the largest step beside an upright wall."""
-FOOT, FEET = 5e-4, 0.2
-"""mm over what stops a cutter at the foot of an upright wall: there its lowest level is; and of the corner's radius: feet whose heights
-differ by less have one level."""
+FOOT = 5e-4
+"""mm over what stops a cutter at the foot of an upright wall: there its lowest level is."""
 OFF = 2e-3
 """mm off an upright wall: there a cutter comes down past it."""
 OPEN = 100.0
@@ -103,7 +102,8 @@ def _run(walls: WallLevels) -> float:
 
 
 def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
-    """Return the heights of the tip (p,) upwards, from the lowest position that is touched; `feet` is how low the tip comes (m,)."""
+    """Return the heights of the tip (p,) upwards, from the lowest position that is touched; `feet` is how low the tip comes (m,). Higher
+    feet have passes of their own (`wall_foot`)."""
     low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
     spacing = np.full(len(low), step) if step > 0.0 else level_spacing(slopes, tool, height)
     spacing = np.minimum(
@@ -117,20 +117,4 @@ def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: 
         else:
             # At its own height the last one would only pass over the top.
             levels[-1] -= BELOW_TOP * (levels[-1] - levels[-2])
-    return np.unique(
-        [
-            *levels,
-            *_without_near(feet[(feet > low) & (feet < high)], levels, FEET * tool.corner_radius),
-        ]
-    )
-
-
-def _without_near(feet: Floats, levels: Floats, least: float) -> list[float]:
-    """Return heights of feet, upwards, that have no level near above them: none nearer to each other than the setting."""
-    found: list[float] = []
-    for z in np.unique(feet).tolist():
-        if (not found or z > found[-1] + least) and not (
-            (levels >= z - tolerance.COINCIDENT) & (levels < z + least)
-        ).any():
-            found.append(z)
-    return found
+    return levels
