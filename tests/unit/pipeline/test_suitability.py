@@ -8,9 +8,12 @@ import pytest
 import round_parts
 import samples
 from blockparts import terrace
+from leaning_pockets import bowl_block
 from parts import PARTS, needs_parts
+from seeded.leaning_panels import leaning_panel
 from seeded.panels import panel
 from seeded.plates import plate
+from shaped_parts import bowl
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.pipeline.planning.family import Rated, ratings
@@ -99,6 +102,19 @@ def test_a_random_panel_is_a_panel_by_far(seed: int, suffix: str) -> None:
     graph = samples.read(made.shape, suffix, made.unit).graph()
     assert best(graph).name == "panel"
     assert SurfaceFamily().suits(graph).score < 0.25
+
+
+@pytest.mark.parametrize("seed", some(12, 0, 2, 9))
+def test_a_random_panel_with_leaning_walls_and_curved_floors_is_a_panel(seed: int) -> None:
+    first, second, *_ = ratings(samples.read(leaning_panel(seed).shape).graph())
+    assert first.name == "panel" and first.suits.score > second.suits.score
+
+
+def test_a_curved_floor_between_walls_is_a_panels_and_a_hollow_in_a_plate_is_not() -> None:
+    family = PanelFamily()
+    floor = family.suits(samples.read(bowl_block()).graph())
+    assert floor.score > 0.99 and "a curved floor between walls" in floor.reason
+    assert "curved floor" not in family.suits(bowl(60.0, 50.0, 20.0, 18.0).graph()).reason
 
 
 @pytest.mark.parametrize("suffix", ["step", "igs"])

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-import numpy as np
-
-from trunnion.findings import BadInput, Finding
+from trunnion.findings import Finding
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
@@ -15,7 +13,7 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Slicer, Smallest, Suitability
 from trunnion.recognize.extent import box
 from trunnion.recognize.holes.recognize import find_holes
-from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
+from trunnion.recognize.panel.classes import FaceClass, classify
 from trunnion.recognize.panel.details import make_details
 from trunnion.recognize.panel.features import (
     FeatureNumbers,
@@ -24,21 +22,15 @@ from trunnion.recognize.panel.features import (
     make_features,
     make_profile,
 )
-from trunnion.recognize.panel.frame import choose_frame, flipped, height_frame
+from trunnion.recognize.panel.frame import choose_frame, flipped
 from trunnion.recognize.panel.holes import PanelHoles
 from trunnion.recognize.panel.kinds import KINDS
 from trunnion.recognize.panel.pockets.rules import GraphFeatures, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.slicing.slices import cut, heights
+from trunnion.recognize.panel.suitability import suitability
 from trunnion.recognize.panel.unexplained import rest_findings
-from trunnion.settings import choose
-from trunnion.units import percent
-
-STRAIGHT = (FaceClass.UP, FaceClass.DOWN, FaceClass.VERTICAL)
-"""Classes of faces that a panel has, whatever surface they lie on."""
-RULED = ("plane", "cylinder", "cone")
-"""Surfaces of walls that lean."""
 
 
 class PanelFamily:
@@ -64,27 +56,8 @@ class PanelFamily:
     )
 
     def suits(self, graph: FaceGraph) -> Suitability:
-        """Return the share of the part's area that lies level or upright in the frame that a panel would have.
-
-        Walls may lean; free-form faces that do are no walls of a panel. Faces that enclose no material can't be sliced.
-        """
-        if graph.open_edges:
-            return Suitability(score=0.0, explained=0.0, reason="the faces enclose no material")
-        try:
-            frame = height_frame(graph)
-        except BadInput:
-            return Suitability(score=0.0, explained=0.0, reason="no face is flat")
-        kinds = classify(graph.in_frame(frame), choose(PanelSettings, {})).kind
-        fits = [
-            k in STRAIGHT or (k in STEEP_CLASSES and s in RULED)
-            for k, s in zip(kinds, graph.surface, strict=True)
-        ]
-        share = float(graph.area[np.array(fits)].sum() / graph.area.sum())
-        return Suitability(
-            score=min(1.0, share),
-            explained=min(1.0, share),
-            reason=f"{percent(share)} of the area level or upright",
-        )
+        """Return the share of the part's area that a panel's faces may have."""
+        return suitability(graph)
 
     def recognize(
         self,
