@@ -12,6 +12,7 @@ from trunnion.plan.panel.freeform.finishing_tasks import (
     side_tasks,
 )
 from trunnion.plan.panel.freeform.roughing_tasks import layer_tasks, rest_layer_tasks
+from trunnion.plan.panel.freeform.slope_tasks import slope_rough_tasks, slope_tasks
 from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
 from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, OperationTask, PanelPlanState
 from trunnion.shop import Stage
@@ -25,8 +26,10 @@ FREEFORM_TASK_MAKERS: Mapping[
     "sides": side_tasks,
     "curved_semi": curved_semi_tasks,
     "curved_floor": curved_floor_tasks,
+    "slopes_rough": slope_rough_tasks,
+    "slopes": slope_tasks,
 }
-"""The rule behind each word that a typical plan gives for the cutter of a stage on leaning walls and curved floors."""
+"""The rule behind each word that a typical plan gives for the cutter of a stage on leaning walls, slopes and curved floors."""
 NEEDED = frozenset({"layers", "sides"})
 """Rules without which a typical plan knows no leaning walls."""
 TASK_MAKERS = {**PLANE_TASK_MAKERS, **FREEFORM_TASK_MAKERS, **HOLE_TASK_MAKERS}

@@ -3,11 +3,16 @@ the other one, or half to each."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
+import numpy as np
+
+from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.model.feature import Feature, Recognition
 from trunnion.plan.holes.hole import is_plain_through, is_wider_behind
+from trunnion.plan.panel.freeform.slope_tasks import slopes_of
 from trunnion.plan.panel.hole_tasks import hole_reach
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, PanelPlanState, catalogue
@@ -17,6 +22,8 @@ from trunnion.plan.tool_choice import candidates
 from trunnion.settings import choose
 from trunnion.shop import Stage
 
+LEVEL = math.sin(tolerance.ANGLE)
+"""Least height of a unit normal that looks up or down."""
 PROFILE_RULES = ("profile_rough", "profile_finish")
 """Cutter rules of the stages that cut an outline, which goes through like a hole."""
 HOLE_RULES = ("drill", "hole_mill")
@@ -37,6 +44,13 @@ def shared_out(
             numbers = _of_hole(feature, states)
         elif feature.kind in outlines:
             numbers = _of_outline(feature, states, stages)
+            if numbers == (0,) and 1 in _of_slopes(feature, states):
+                states[1].slopes.add(feature.id)
+                numbers = (0, 1)
+        elif slopes_of(feature):
+            numbers = _of_slopes(feature, states) or (0,)
+            for n in numbers[1:]:
+                states[n].slopes.add(feature.id)
         else:
             recognition, part = states[0].recognition, states[0].space.part
             numbers = (int(is_from_below(feature, recognition, part)),)
@@ -96,6 +110,18 @@ def _of_outline(
     for state in states:
         state.halved.discard(feature.id)
     return (0,)
+
+
+def _of_slopes(feature: Feature, states: Sequence[PanelPlanState]) -> tuple[int, ...]:
+    """Return the setups that see what of a feature leans, or some of it where it winds to either side."""
+    graph = states[0].space.part.graph()
+    mine = np.isin(graph.sample_face, [t - 1 for t in slopes_of(feature)])
+    normals = graph.sample_normal[mine]
+    return tuple(
+        n
+        for n, state in enumerate(states)
+        if (state.space.setup.frame.local_direction(normals)[:, 2] > LEVEL).any()
+    )
 
 
 def _fits_outline(state: PanelPlanState, feature: Feature, stages: Sequence[Stage]) -> bool:

@@ -99,7 +99,8 @@ class OperationTask:
 class PanelPlanState:
     """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way, `choices`
     are a session's settings by full key, `holes` what the stages on holes have found out. Ids of features that two setups share: `halved`
-    of those cut half from here and half from the other side, `both_ends` of holes that both widen, `bored` of those bored in the other.
+    of those cut half from here and half from the other side, `both_ends` of holes that both widen, `bored` of those bored in the other,
+    `slopes` of those of which only what leans, and looks up here, is cut here too.
     `curved` returns the part's skin as the setup sees it, None where nobody has it; `freeform` is what the stages on leaning walls and
     curved floors have found out."""
 
@@ -119,6 +120,7 @@ class PanelPlanState:
     halved: set[str] = field(default_factory=set)
     both_ends: set[str] = field(default_factory=set)
     bored: set[str] = field(default_factory=set)
+    slopes: set[str] = field(default_factory=set)
     curved: Callable[[], SurfaceSpace] | None = None
     freeform: Any = None
     progress: Progress = NO_PROGRESS
@@ -126,7 +128,7 @@ class PanelPlanState:
     def task_id(self, stage: Stage, feature: Feature) -> str:
         """Return the name of a stage's operation on a feature; what both sides cut has the setup's name in it."""
         own = f"{stage.kind}-{feature.id}"
-        shared = feature.id in self.halved | self.both_ends
+        shared = feature.id in self.halved | self.both_ends | self.slopes
         return f"{own}-{self.space.setup.name}" if shared else own
 
 
@@ -458,7 +460,7 @@ def _profile_tasks(
     found = []
     space = state.space
     for feature in features:
-        if feature.kind in stage.on:
+        if feature.kind in stage.on and feature.id not in state.slopes:
             outline = space.silhouette()
             wanted = space.blank_area().minus(outline)
             if not wanted:

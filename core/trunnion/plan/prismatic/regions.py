@@ -23,12 +23,15 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Piece, Region, union_al
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.setup import Setup
-from trunnion.plan.prismatic.lean import is_freeform
+from trunnion.plan.prismatic.lean import LEANING, is_freeform
 from trunnion.recognize.grow import bend_radius
 from trunnion.recognize.holes.sweep import arcs, axis_frame, holds
 
 AROUND = 150.0
 """mm: how far free space is looked at around the blank; more than two diameters of the largest cutter."""
+
+LEANING_SECTIONS = 9
+"""Sections that the outline is the outermost of where sides of it lean; free-form ones may be widest anywhere."""
 
 NEAR = 60.0
 """mm: how far free space is looked at around a top; more than a cutter of the largest diameter and its path in."""
@@ -177,9 +180,16 @@ class SetupSpace:
         return window.minus(self.material_over(z, window))
 
     def silhouette(self) -> Region:
-        """Return the part's outline seen from above, its openings filled."""
+        """Return the part's outline seen from above, its openings filled: where sides of it lean, their widest sections count."""
         margin = tolerance.OFF_PLANE
-        heights = (self.bottom + margin, 0.5 * (self.bottom + self.top), self.top - margin)
+        leans = any(
+            f.with_role(*LEANING) if f.kind == "profile" else f.attributes.get("outer")
+            for f in self.recognition
+        )
+        low, high = self.bottom + margin, self.top - margin
+        heights = (low, 0.5 * (self.bottom + self.top), high)
+        if leans:
+            heights = tuple(np.linspace(low, high, LEANING_SECTIONS).tolist())
         return union_all([self.section(z).holes_filled() for z in heights]).holes_filled()
 
     def top_of(self, feature: Feature) -> float:

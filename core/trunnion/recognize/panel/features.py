@@ -20,7 +20,6 @@ from trunnion.recognize.panel.sizes import (
     rib_sizes,
 )
 from trunnion.recognize.panel.slicing.confirm import (
-    LEANING_REMEDY,
     ConfirmedPocket,
     confirm,
     refusal,
@@ -96,46 +95,25 @@ def make_features(
 
 
 def make_profile(view: PanelSide, taken: set[int], id: str) -> SideFeatures:
-    """Return the outer profile, if any vertical face lies on the outline: concave arcs are walls, convex roundings corners.
-
-    It is refused when the outline goes on over a leaning face, which the cut along the vertical ones would run into.
-    """
-    faces = [f for f in view.profile if f not in taken]
-    if not faces:
+    """Return the outer profile, if any steep face lies on the outline: concave arcs are walls, convex roundings corners, and what leans
+    has the role of a pocket's wall that leans away from or over a floor."""
+    upright = [f for f in view.profile if f not in taken]
+    leaning = [f for f in view.leaning_profile if f not in taken]
+    if not (upright or leaning):
         return SideFeatures(features=(), findings=())
-    round_ = [f for f in faces if is_rounding(view.graph, view.classes, f)]
-    roles = tuple(FaceRole(role="corner" if f in round_ else "wall", face=f + 1) for f in faces)
+    round_ = [f for f in upright if is_rounding(view.graph, view.classes, f)]
+    roles = {f: "corner" if f in round_ else "wall" for f in upright}
+    roles |= {
+        f: "inner_convergence" if view.classes.kind[f] is FaceClass.INNER else "outer_convergence"
+        for f in leaning
+    }
     sizes: dict[str, Size] = {"height": rounded(view.height)}
     radius = corner_radius(view, round_) if round_ else None
     if radius is not None:
         sizes["corner_radius"] = radius
-    leaning = sorted(
-        {
-            n
-            for f in faces
-            for n in view.graph.neighbours(f)
-            if view.classes.steep[n] and n not in taken
-        }
-        - set(view.profile)
-    )
-    if not leaning:
-        return SideFeatures(
-            features=(Feature(id=id, kind="profile", faces=roles, sizes=sizes),), findings=()
-        )
-    why = "a wall of the outline leans"
+    faces = tuple(FaceRole(role=roles[f], face=f + 1) for f in sorted(roles))
     return SideFeatures(
-        features=(
-            Feature(id=id, kind="profile", faces=roles, sizes=sizes, attributes={"refused": why}),
-        ),
-        findings=(
-            warning(
-                "panel.leaning-wall",
-                f"{id} is not planned: {why}",
-                id,
-                *face_tags(f + 1 for f in leaning),
-                remedy=LEANING_REMEDY,
-            ),
-        ),
+        features=(Feature(id=id, kind="profile", faces=faces, sizes=sizes),), findings=()
     )
 
 

@@ -17,7 +17,10 @@ from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.slicing.slices import Slices
 from trunnion.recognize.panel.slicing.tree import SpaceTree, build_tree
 from trunnion.tolerance import SLIVER
+from trunnion.units import radians
 
+FREE_FORM = ("spline", "revolution", "extrusion", "other")
+"""Surfaces of fringes: sides between two curves, ruled as they may be."""
 ON_RIM = 0.05
 """mm: a face whose samples are this near to the outline lies on it (the slices are on chords)."""
 
@@ -49,6 +52,39 @@ class PanelSide:
     def profile(self) -> tuple[int, ...]:
         """The rows of the vertical faces that lie on the outline seen from above."""
         return tuple(r for r in self.classes.rows(FaceClass.VERTICAL) if self._on_rim(r))
+
+    @cached_property
+    def leaning_profile(self) -> tuple[int, ...]:
+        """The rows of the steep faces that lean and look out of the part; free-form ones are fringes."""
+        return tuple(
+            int(r)
+            for r in np.flatnonzero(self.classes.steep)
+            if self.classes.kind[r] is not FaceClass.VERTICAL
+            and self.graph.surface[r] not in FREE_FORM
+            and self.looks_outwards(int(r))
+        )
+
+    def looks_outwards(self, row: int) -> bool:
+        """Return whether a face that leans has nothing but air before its middle, in the slice that is nearest: no pocket, and no opening.
+
+        The slice lies a little over or under the middle: as far as the face may have come forward there, nothing counts.
+        """
+        layers, point, normal = (
+            self.slices.layers,
+            self.graph.centre[row],
+            self.graph.normal[row][:2],
+        )
+        flat = float(np.hypot(*normal))
+        if not layers or flat < SLIVER:
+            return False
+        layer = min(layers, key=lambda s: (abs(s.z - float(point[2])), s.z))
+        aside = abs(layer.z - float(point[2])) * float(np.tan(radians(self.settings.beta))) + ON_RIM
+        before = shapely.Point(*(point[:2] + aside / flat * normal))
+        return not any(
+            shapely.Polygon(piece.exterior).contains(before)
+            for piece in shapely.get_parts(layer.material)
+            if piece.geom_type == "Polygon"
+        )
 
     @cached_property
     def corners(self) -> frozenset[int]:

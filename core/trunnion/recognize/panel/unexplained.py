@@ -9,7 +9,10 @@ from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.recognize.panel.classes import FaceClass, FaceClasses
 
 WORDS = {
-    "panel.chamfer": ("chamfers are not handled yet", "cut them by hand-made operations"),
+    "panel.chamfer": (
+        "slopes wider than a chamfer are not handled yet",
+        "cut them by hand-made operations",
+    ),
     "panel.leaning-wall": (
         "leaning faces outside of pockets are not handled yet",
         "machine them with another strategy",

@@ -67,18 +67,25 @@ def cutters_of(
 
 
 def balls(state: PanelPlanState) -> list[Tool]:
+    """Return the balls for the material that are no larger than is wanted."""
     tools = state.shop.tools_for(state.material.iso_group, "surface")
     return [t for t in tools if t.form == "ball" and t.diameter <= state.settings.largest]
 
 
 def side_cutters(state: PanelPlanState, pocket: FreeformPocket) -> list[Tool]:
     """Return the end mills and balls that come through a pocket's corners; of each size the shortest that is as long as it is deep."""
+    corner = number(pocket.feature, "corner_radius") * state.settings.corner_share
+    deep = pocket.top - pocket.bottom + state.settings.reach_clearance
+    return mills_and_balls(state, corner, deep)
+
+
+def mills_and_balls(state: PanelPlanState, corner: float, deep: float) -> list[Tool]:
+    """Return the end mills and balls of at most a radius in mm (0: of any), where there are such; of each size the shortest that reaches as
+    `deep` in mm."""
     mills = state.shop.tools_for(state.material.iso_group, "finish")
     tools = [t for t in (*mills, *balls(state)) if t.form in ("flat", "bull", "ball")]
     tools = [t for t in tools if t.diameter <= state.settings.largest]
-    corner = number(pocket.feature, "corner_radius") * state.settings.corner_share
     small = [t for t in tools if corner <= 0.0 or t.radius <= corner] or tools
-    deep = pocket.top - pocket.bottom + state.settings.reach_clearance
     found: dict[tuple[float, float], Tool] = {}
     for tool in sorted(small, key=lambda t: (depth_reached(t), t.name)):
         size = tool.diameter, tool.corner_radius

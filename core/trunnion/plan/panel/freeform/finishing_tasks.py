@@ -137,7 +137,7 @@ def side_tasks(
                 ALLOWANCE: 0.0,
                 f"{SIDES_STRATEGY}.shallowest": shallowest,
                 **chord_choices(SIDES_STRATEGY, settings.scallop),
-                **_after(SIDES_STRATEGY, step.earlier),
+                **after_earlier(SIDES_STRATEGY, step.earlier),
             }
             found.append(
                 _surface_task(
@@ -176,7 +176,6 @@ def _on_curved_floors(
         left = pocket.layer_area().remaining(settings.cell, state.settings.floor_allowance)
         left += 0.5 * layer_height(pocket, settings)
         height = settings.semi_scallop if semi else settings.scallop
-        is_after_layers = semi or settings.semi_allowance <= 0.0
         steps = with_larger_first(
             cutters,
             balls(state),
@@ -184,13 +183,15 @@ def _on_curved_floors(
             partial(area_rate, state, height=settings.scallop),
             tool_change(state),
         )
-        for n, step in enumerate(steps):
+        # Semi-finishing makes the load even where the first cutter goes: what that leaves is little, and none of its rests are.
+        for n, step in enumerate(steps[:1] if semi else steps):
+            is_after_layers = semi or step.earlier is not None or settings.semi_allowance <= 0.0
             choices: dict[str, Value] = {
                 SCALLOP: height,
                 ALLOWANCE: settings.semi_allowance if semi else 0.0,
                 f"{FLOOR_STRATEGY}.steepest": settings.steep + LAP,
                 **chord_choices(FLOOR_STRATEGY, height),
-                **_after(FLOOR_STRATEGY, step.earlier),
+                **after_earlier(FLOOR_STRATEGY, step.earlier),
             }
             depth = left if is_after_layers else settings.semi_allowance
             found.append(
@@ -211,7 +212,8 @@ def _feet(state: PanelPlanState, pocket: FreeformPocket) -> tuple[int, ...]:
     return tuple(sorted(own & beside & fillets))
 
 
-def _after(strategy: str, earlier: Tool | None) -> dict[str, Value]:
+def after_earlier(strategy: str, earlier: Tool | None) -> dict[str, Value]:
+    """Return the choices of an operation on what an earlier cutter left."""
     if earlier is None:
         return {}
     return {EARLIER: earlier.name, f"{strategy}.lead_radius": REST_LEAD}
@@ -244,7 +246,7 @@ def _surface_task(
         state,
         stage,
         pocket,
-        f"{stage.kind}-{pocket.feature.id}{_rest_name(n) if earlier else ''}",
+        f"{stage.kind}-{pocket.feature.id}{rest_name(n) if earlier else ''}",
         ToolRequirement(
             depth=state.space.top - pocket.bottom,
             envelope_area=pocket.mouth,
@@ -259,6 +261,6 @@ def _surface_task(
     )
 
 
-def _rest_name(n: int) -> str:
+def rest_name(n: int) -> str:
     """Return the end of the name of an area's `n`-th operation on a rest: `-rest`, then `-rest-2`."""
     return "-rest" if n < 2 else f"-rest-{n}"

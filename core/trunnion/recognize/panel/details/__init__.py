@@ -12,12 +12,7 @@ from trunnion.recognize.panel.details.pits import pits
 from trunnion.recognize.panel.features import FeatureNumbers, SideFeatures
 from trunnion.recognize.panel.side import PanelSide
 
-REMEDIES = {
-    "chamfer": ("panel.chamfer", "cut it by a hand-made operation"),
-    "pit": ("panel.undercut", "cut it with a T-slot cutter, or from another side"),
-    "fringe": ("panel.leaning-wall", "machine it with another strategy"),
-}
-"""For each kind the code of the finding that nothing is planned for it, and what a person can do."""
+PIT_REMEDY = "cut it with a T-slot cutter, or from another side"
 
 
 def make_details(
@@ -29,7 +24,7 @@ def make_details(
 ) -> SideFeatures:
     """Return chamfers, pits and fringes: of the `remaining` faces (rows), which no feature explains, and of the pockets' free-form walls.
 
-    What no pocket holds too is not planned, and named with a finding.
+    No upright cutter gets into pits: each is named with a finding.
     """
     made = [*chamfers(above, below, remaining, numbers)]
     rest = set(remaining) - {tag - 1 for f in made for tag in f.tags}
@@ -37,21 +32,15 @@ def make_details(
     rest -= {tag - 1 for f in made for tag in f.tags}
     made += fringes(above, features, rest, numbers)
     return SideFeatures(
-        features=tuple(made), findings=tuple(_finding(f) for f in made if _is_left(f))
+        features=tuple(made), findings=tuple(_finding(f) for f in made if f.kind == "pit")
     )
 
 
-def _is_left(feature: Feature) -> bool:
-    """Return whether nothing cuts a feature: a pocket's fringe is cut with its pocket."""
-    return feature.kind != "fringe" or "in" not in feature.attributes
-
-
-def _finding(feature: Feature) -> Finding:
-    code, remedy = REMEDIES[feature.kind]
+def _finding(pit: Feature) -> Finding:
     return warning(
-        code,
-        f"{feature.id} is not planned: {feature.kind}s are not handled yet",
-        feature.id,
-        *face_tags(feature.tags),
-        remedy=remedy,
+        "panel.undercut",
+        f"{pit.id} is not planned: pits are not handled yet",
+        pit.id,
+        *face_tags(pit.tags),
+        remedy=PIT_REMEDY,
     )

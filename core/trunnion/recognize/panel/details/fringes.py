@@ -11,10 +11,8 @@ from shapely.ops import nearest_points
 from trunnion.model.feature import FaceRole, Feature
 from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.features import FeatureNumbers, in_rows
-from trunnion.recognize.panel.side import ON_RIM, PanelSide
+from trunnion.recognize.panel.side import FREE_FORM, ON_RIM, PanelSide
 
-FREE_FORM = ("spline", "revolution", "extrusion", "other")
-"""Surfaces of fringes: sides between two curves, ruled as they may be."""
 NEAR = 30.0
 """mm of material between a pocket's fringe and the outline at most: farther in, a free-form wall is a wall."""
 
@@ -27,7 +25,7 @@ def fringes(
     def middle(row: int) -> tuple[float, float]:
         return float(view.graph.centre[row][0]), float(view.graph.centre[row][1])
 
-    outer = [r for r in sorted(rows) if _is_free_form(view, r) and _meets_outline(view, r)]
+    outer = [r for r in sorted(rows) if _is_free_form(view, r) and view.looks_outwards(r)]
     owners = {
         tag - 1: f.id
         for f in features
@@ -51,15 +49,6 @@ def _is_free_form(view: PanelSide, row: int) -> bool:
     """Return whether a face is a free-form side that leans, as far as a wall or a slope that bounds a pocket does."""
     leans = view.classes.rising[row] and view.classes.kind[row] is not FaceClass.VERTICAL
     return bool(leans and view.graph.surface[row] in FREE_FORM)
-
-
-def _meets_outline(view: PanelSide, row: int) -> bool:
-    """Return whether an edge of a face lies on the outline seen from above."""
-    edges = list(view.graph.edges_of[row])
-    return any(
-        view.slices.rim.distance(shapely.Point(p[0], p[1])) < ON_RIM
-        for p in view.graph.middle[edges]
-    )
 
 
 def _is_near_outline(view: PanelSide, row: int) -> bool:
