@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from surface_forms import cylinder, joined, plane
+from trunnion.geometry.kernels.edge_numbers import FEW, numbered_edges, numbered_edges_loop
 from trunnion.geometry.sheet.edge_collapses import SHORT, TURN, collapsed
 from trunnion.geometry.sheet.edge_flips import OBTUSE, ROUNDS, flipped
 from trunnion.geometry.sheet.refine_sheet import split_finely, split_where
@@ -34,6 +35,27 @@ def lopsided(seed: int, n: int = 9):
     inner = (points[:, 0] % 3.0 > 0.0) & (points[:, 1] > 0.0) & (points[:, 1] < 4.0)
     points[inner, :2] += rng.uniform(-0.6, 0.6, (inner.sum(), 2)) / (n - 1)
     return points, sheet.normals, sheet.triangles, sheet.face
+
+
+@settings(deadline=None)
+@given(
+    st.integers(3, 12).flatmap(
+        lambda n: st.lists(
+            st.permutations(range(n)).map(lambda corners: corners[:3]), min_size=0, max_size=30
+        )
+    )
+)
+def test_edges_are_numbered_as_by_the_plain_reference(triangles) -> None:
+    corners = np.array(triangles, np.int64).reshape(-1, 3)
+    expected, found = numbered_edges(corners, 12), numbered_edges_loop(corners, 12)
+    assert all(np.array_equal(a, b) for a, b in zip(expected, found, strict=True))
+
+
+def test_edges_of_a_fan_of_many_triangles_are_numbered_as_by_the_plain_reference() -> None:
+    rim = np.random.default_rng(0).permutation(np.arange(1, 4 * FEW))
+    fan = np.column_stack([np.zeros(len(rim) - 1, np.int64), rim[:-1], rim[1:]])
+    expected, found = numbered_edges(fan, 4 * FEW), numbered_edges_loop(fan, 4 * FEW)
+    assert all(np.array_equal(a, b) for a, b in zip(expected, found, strict=True))
 
 
 def plainly_flipped(points, normals, triangles, face, measure):

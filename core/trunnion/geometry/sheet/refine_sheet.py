@@ -110,7 +110,7 @@ def _split_where(
         halved[long] = wanted(0.5 * (points[a[long]] + points[b[long]]), size[long])
         if not halved.any():
             break
-        corner = np.argmax(_ranked(size)[side], axis=1)
+        corner = _longest(size, side)
         widest = side[np.arange(len(side)), corner]
         while not halved[needed := widest[halved[side].any(axis=1)]].all():
             halved[needed] = True
@@ -129,11 +129,10 @@ def _split_where(
     return Sheet(points=points, normals=normals, triangles=triangles, face=face)
 
 
-def _ranked(size: Floats) -> Ints:
-    """Return the ranks (e,) of edges by their sizes, of equal ones by their rows."""
-    rank = np.empty(len(size), np.int64)
-    rank[np.lexsort((np.arange(len(size)), size))] = np.arange(len(size))
-    return rank
+def _longest(size: Floats, side: Ints) -> Ints:
+    """Return which sides (t,) of triangles with edges (t, 3) are their longest by the edges' sizes (e,), of equal ones the last edge."""
+    of = size[side]
+    return np.asarray(np.argmax(np.where(of == of.max(axis=1)[:, None], side, -1), axis=1))
 
 
 def _refuse_too_many(count: int) -> None:
@@ -162,7 +161,7 @@ def _split(
         size = measure(
             points[ends[:, 0]], normals[ends[:, 0]], points[ends[:, 1]], normals[ends[:, 1]]
         )
-        corner = np.argmax(_ranked(size)[side], axis=1)
+        corner = _longest(size, side)
         widest = side[np.arange(len(side)), corner]
         done = size[widest] <= longest
         whole.append(triangles[done])

@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.edge_numbers import numbered_edges_loop
 from trunnion.geometry.sheet.skin import Skin
 
 SMOOTH = np.cos(tolerance.SMOOTH_JOIN)
@@ -192,11 +193,8 @@ def _joined(points: Floats, normals: Floats) -> Ints:
 
 def edges_of(triangles: Ints, n_points: int) -> tuple[Ints, Ints]:
     """Return the edges (e, 2) of triangles (t, 3), lower row of points first, and which of them the triangles' sides (t, 3) are."""
-    start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
-    key, side = np.unique(
-        np.minimum(start, end) * n_points + np.maximum(start, end), return_inverse=True
-    )
-    return np.column_stack([key // n_points, key % n_points]), side.reshape(-1, 3)
+    ends, side = numbered_edges_loop(np.ascontiguousarray(triangles, dtype=np.int64), n_points)
+    return np.asarray(ends), np.asarray(side)
 
 
 def between(
