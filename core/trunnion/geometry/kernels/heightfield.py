@@ -19,7 +19,7 @@ from trunnion.geometry.arrays import Floats
 HALF_DIAGONAL = math.sqrt(0.5)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def zmap_cut(
     heights: Floats,
     x0: float,
@@ -80,7 +80,7 @@ def zmap_cut(
                     heights[i, j] = lift
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def zmap_highest(
     heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float
 ) -> float:

@@ -22,6 +22,7 @@ from trunnion.plan.contract import PartContext
 from trunnion.plan.setups import held
 from trunnion.progress import Progress
 from trunnion.settings import digest
+from trunnion.toolpath.motion.load import LoadStock
 from trunnion.toolpath.motion.reorient import Pose
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.remaining import RemainingStock
@@ -80,6 +81,7 @@ class SetupScene:
     fixtures: tuple[Fixture, ...]
     handed_on: StockViews | None = None
     sides: StockViews = field(init=False)
+    loads: LoadStock = field(init=False)
     last: OperationPath | None = None
     tool: Tool | None = None
     _made: dict[Hashable, Any] = field(default_factory=dict)
@@ -87,6 +89,7 @@ class SetupScene:
     def __post_init__(self) -> None:
         self.setup = held(self.setup, self.fixtures, self.blank)
         self.sides = StockViews(self.blank) if self.handed_on is None else self.handed_on
+        self.loads = LoadStock(self.blank, self.setup.frame)
 
     def stock(self, setup: Setup) -> PlanningStock:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
