@@ -7,12 +7,15 @@ import hashlib
 import io
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from trunnion.findings import BadInput
-from trunnion.part.part import Part
 from trunnion.part.read.limits import ReadLimits
 from trunnion.part.read.text import check_iges, check_step, kind_of
 from trunnion.progress import NO_PROGRESS, Progress
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
 
 SUFFIXES = (".step", ".stp", ".stpz", ".igs", ".iges")
 _GZIP = b"\x1f\x8b"
@@ -70,7 +73,11 @@ def _read(
         solid=solid,
         size=len(plain),
     )
-    return Part.from_bytes(run(request, plain, limits, progress))
+    read = run(request, plain, limits, progress)
+    # The CAD kernel takes a second to load: the process that reads the file has been at work meanwhile.
+    from trunnion.part.part import Part
+
+    return Part.from_bytes(read)
 
 
 def _bytes_of(file: Path, limits: ReadLimits) -> bytes:
