@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter, defaultdict
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -128,7 +129,10 @@ def names_of(path: Path) -> set[str]:
     return found
 
 
-NAMES = {path: names_of(path) for path in MODULES}
+@cache
+def names_by_module() -> dict[Path, set[str]]:
+    """Return the names that each module gives; not worked out while tests are collected."""
+    return {path: names_of(path) for path in MODULES}
 
 
 def private_words(name: str) -> set[str]:
@@ -172,7 +176,7 @@ def test_no_class_has_a_private_word():
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
 def test_no_function_parameter_or_variable_has_a_private_word(path):
-    private = {name: words for name in NAMES[path] if (words := private_words(name))}
+    private = {name: words for name in names_by_module()[path] if (words := private_words(name))}
     assert private == {}, "use the field's word of docs/words.md; one word for one meaning"
 
 
@@ -183,7 +187,7 @@ def test_a_private_word_in_any_name_is_found():
 
 
 def test_every_allowed_name_is_in_use():
-    given = {name.strip("_").lower() for names in NAMES.values() for name in names}
+    given = {name.strip("_").lower() for names in names_by_module().values() for name in names}
     assert {name for names in ALLOWED.values() for name in names.split()} - given == set()
 
 
