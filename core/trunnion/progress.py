@@ -145,30 +145,49 @@ class Progress:
         return made
 
     @contextmanager
-    def beside(self, work: Callable[[Progress], T]) -> Iterator[Callable[[], T]]:
-        """Do `work` in a thread of its own while the block runs; the block is given what waits for it and returns what it returns.
+    def in_turn(self) -> Iterator[Callable[[Callable[[Progress], T]], Callable[[], T]]]:
+        """Let pieces of work be done one after another in a thread of their own while the block runs.
 
-        `work` must not change what the block uses. What it raises is raised by the wait. When the block fails or is cancelled, `work` is
-        told to stop and waited for.
+        The block is given what takes a piece and returns what waits for it and returns what it returns. No piece may change what the block
+        uses. What a piece raises is raised by its wait. When the block fails or is cancelled, what is at work is told to stop and waited
+        for, and what has not begun is dropped.
         """
         stop = threading.Event()
 
         def cancelled() -> bool:
-            return stop.is_set() or (self._cancelled is not None and self._cancelled())
+            if self._cancelled is not None and self._cancelled():
+                stop.set()
+            return stop.is_set()
 
+        own = Progress(cancelled=cancelled)
         with ThreadPoolExecutor(1, "trunnion-beside") as pool:
-            future = pool.submit(work, Progress(cancelled=cancelled))
 
-            def result() -> T:
-                while not wait([future], timeout=LOOK_S).done:
-                    self.check()
-                return future.result()
+            def begin(work: Callable[[Progress], T]) -> Callable[[], T]:
+                def piece() -> T:
+                    own.check()
+                    return work(own)
+
+                future = pool.submit(piece)
+
+                def result() -> T:
+                    while not wait([future], timeout=LOOK_S).done:
+                        self.check()
+                    return future.result()
+
+                return result
 
             try:
-                yield result
+                yield begin
             except BaseException:
                 stop.set()
+                pool.shutdown(cancel_futures=True)
                 raise
+
+    @contextmanager
+    def beside(self, work: Callable[[Progress], T]) -> Iterator[Callable[[], T]]:
+        """Do `work` in a thread of its own while the block runs, as the only piece of `in_turn`; the block is given what waits for it."""
+        with self.in_turn() as begin:
+            yield begin(work)
 
     def _look(self) -> None:
         if self._cancelled is not None and self._cancelled():

@@ -6,8 +6,9 @@ frame here. An operation whose drive, tool, data, settings and stock have the sa
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,7 @@ from trunnion.plan.contract import DriveNeeds, Planner, ToolAxis, planner_for
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
+from trunnion.toolpath.motion.load import LoadStock, PathLoad
 from trunnion.toolpath.motion.reorient import clearance_sphere, moved_over
 from trunnion.toolpath.stock.views import StockViews
 
@@ -42,32 +44,38 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
     """Return the toolpath of every operation that is not suppressed, in the order they are cut."""
     if session.process is None or session.recognition is None or session.blank is None:
         raise BadCall("no operations yet: generate the route first")
-    made: list[OperationPath] = []
+    laid: list[OperationPath] = []
+    loads: list[Callable[[], PathLoad | None]] = []
     planner, parts = planner_for(session.recognition.family), SessionContext(context, session)
     material = context.shop.material(session.process.material)
     total = sum(len(session.process.of_setup(setup.name)) for setup in session.setups)
     # What one setup leaves is the next one's stock, whatever side it looks from.
     stock = StockViews(session.blank)
-    for setup in session.setups:
-        scene = SetupScene(
-            context=parts,
-            recognition=session.recognition,
-            blank=session.blank,
-            setup=setup,
-            process=session.process,
-            fixtures=session.fixtures_of(setup.name),
-            handed_on=stock,
-        )
-        for operation in session.process.of_setup(setup.name):
-            progress.at(len(made) / max(total, 1), f"toolpath of {operation.id}")
-            here = progress.part(
-                len(made) / max(total, 1),
-                (len(made) + 1) / max(total, 1),
-                f"toolpath of {operation.id}",
+    with progress.in_turn() as beside:
+        for setup in session.setups:
+            scene = SetupScene(
+                context=parts,
+                recognition=session.recognition,
+                blank=session.blank,
+                setup=setup,
+                process=session.process,
+                fixtures=session.fixtures_of(setup.name),
+                handed_on=stock,
             )
-            laid = _make_one(session, planner, scene, operation, here)
-            made.append(_loaded(laid, operation, scene, material, here.part(1.0, 1.0)))
-    return tuple(made)
+            loaded = LoadStock(session.blank, setup.frame)
+            for operation in session.process.of_setup(setup.name):
+                begin, end = (len(laid) + n for n in (0, 1))
+                text = f"toolpath of {operation.id}"
+                progress.at(begin / total, text)
+                here = progress.part(begin / total, end / total, text)
+                made = _make_one(session, planner, scene, operation, here)
+                # No path depends on the load of another: it is measured while the next path is laid.
+                loads.append(
+                    beside(partial(_load, made.path, setup.frame, operation, loaded, material))
+                )
+                laid.append(made)
+        progress.doing("measuring the load")
+        return tuple(_with_load(made, load()) for made, load in zip(laid, loads, strict=True))
 
 
 def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[Finding, ...]:
@@ -171,19 +179,26 @@ def _with(first: Sequence[Finding], others: Sequence[Finding]) -> tuple[Finding,
     return (*first, *(f for f in others if f.code not in codes))
 
 
-def _loaded(
-    laid: OperationPath,
+def _load(
+    path: Toolpath,
+    frame: Frame,
     operation: Operation,
-    scene: SetupScene,
+    stock: LoadStock,
     material: Material,
     progress: Progress,
-) -> OperationPath:
-    """Return a toolpath with the highest load that its motions come to, where its tool stands upright in the setup."""
-    cuts = laid.path.motion != Motion.RAPID
-    if not cuts.any() or (laid.path.axis[cuts, 2] < 1.0 - tolerance.PARAMETRIC).any():
+) -> PathLoad | None:
+    """Return the load of a path in a frame, None where it cuts nothing or its tool does not stand upright; it is taken off the stock."""
+    cuts = path.motion != Motion.RAPID
+    if not cuts.any() or (path.axis[cuts, 2] < 1.0 - tolerance.PARAMETRIC).any():
+        return None
+    own = turned(path, frame, stock.frame)
+    return stock.cut(own, operation.cutter, operation.data, material, progress)
+
+
+def _with_load(laid: OperationPath, load: PathLoad | None) -> OperationPath:
+    """Return a toolpath with the highest load that its motions come to."""
+    if load is None:
         return laid
-    path = turned(laid.path, scene.setup.frame, scene.loads.frame)
-    load = scene.loads.cut(path, operation.cutter, operation.data, material, progress)
     power, rate, chip = (float(v.max(initial=0.0)) for v in (load.power, load.rate, load.chip))
     if (power, rate, chip) == (laid.power, laid.rate, laid.chip):
         return laid

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import threading
 import time
+from functools import partial
 
 import numpy as np
 import pytest
 from numba import njit
 
 from trunnion import progress as module
-from trunnion.findings import Cancelled
+from trunnion.findings import Cancelled, Refused
 from trunnion.geometry.kernels.compiling import TEXT, compiling
 from trunnion.progress import BEAT_S, NO_PROGRESS, Progress
 from trunnion.threads import in_parallel
@@ -115,6 +116,50 @@ def test_cancel_does_not_wait_for_work_in_a_thread_of_its_own_and_ends_it() -> N
     with pytest.raises(Cancelled):
         Watch(stop_at=3).progress().aside(work)
     assert ended.wait(5.0)
+
+
+def test_pieces_of_work_are_done_in_turn_in_one_thread_while_others_go_on() -> None:
+    done: list[tuple[int, str]] = []
+
+    def piece(n: int, own: Progress) -> int:
+        own.check()
+        time.sleep(0.01 * (3 - n))
+        done.append((n, threading.current_thread().name))
+        return n
+
+    with Watch().progress().in_turn() as begin:
+        waits = [begin(partial(piece, n)) for n in range(3)]
+        assert [wait() for wait in waits] == [0, 1, 2]
+    assert [n for n, _ in done] == [0, 1, 2]
+    (name,) = {name for _, name in done}
+    assert name != threading.current_thread().name
+
+
+def test_a_piece_in_turn_raises_its_own_error_where_it_is_waited_for() -> None:
+    def work(own: Progress) -> None:
+        raise Refused("no room")
+
+    with Watch().progress().in_turn() as begin:
+        waits = begin(work), begin(lambda own: "done")
+        assert waits[1]() == "done"
+        with pytest.raises(Refused, match="no room"):
+            waits[0]()
+
+
+def test_cancel_ends_the_piece_at_work_and_drops_those_in_turn() -> None:
+    begun: list[str] = []
+
+    def endless(own: Progress) -> None:
+        begun.append("endless")
+        while True:
+            own.check()
+            time.sleep(0.01)
+
+    with pytest.raises(Cancelled), Watch(stop_at=3).progress().in_turn() as begin:
+        wait = begin(endless)
+        begin(lambda own: begun.append("dropped"))
+        wait()
+    assert begun == ["endless"]
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -19,7 +19,7 @@ from trunnion.geometry.arrays import Floats
 HALF_DIAGONAL = math.sqrt(0.5)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def zmap_cut(
     heights: Floats,
     x0: float,
@@ -46,12 +46,16 @@ def zmap_cut(
     gone[:] = 0.0
     if reach <= 0.0:
         return
+    # Squares of a centre's plan distance: within which the cutter covers all of a cell, and within which its level part does.
+    flat = reach - corner
+    covered, level = reach * reach, flat * flat if flat > 0.0 else -1.0
     for n in range(len(starts)):
         ax, ay, bx, by = starts[n, 0], starts[n, 1], ends[n, 0], ends[n, 1]
         # Slopes count at their higher end.
         z = max(starts[n, 2], ends[n, 2])
         dx, dy = bx - ax, by - ay
         square = dx * dx + dy * dy
+        share = 1.0 / square if square > 0.0 else 0.0
         i0 = max(int(math.floor((min(ax, bx) - reach - x0) / cell - 0.5)), 0)
         i1 = min(int(math.ceil((max(ax, bx) + reach - x0) / cell - 0.5)) + 1, nx)
         j0 = max(int(math.floor((min(ay, by) - reach - y0) / cell - 0.5)), 0)
@@ -62,17 +66,15 @@ def zmap_cut(
                 if heights[i, j] <= z:
                     continue
                 py = y0 + (j + 0.5) * cell - ay
-                t = 0.0
-                if square > 0.0:
-                    t = min(max((px * dx + py * dy) / square, 0.0), 1.0)
-                # Plan distance of the furthest point of the cell.
-                far = math.hypot(px - t * dx, py - t * dy) + slack
-                if far > radius:
+                t = min(max((px * dx + py * dy) * share, 0.0), 1.0)
+                ox, oy = px - t * dx, py - t * dy
+                away = ox * ox + oy * oy
+                if away > covered:
                     continue
-                # Quarter circle of the corner: corner - sqrt(corner^2 - inner^2).
-                inner = far - (radius - corner)
+                # Quarter circle of the corner, met at the furthest point of the cell: corner - sqrt(corner^2 - inner^2).
                 lift = z
-                if inner > 0.0:
+                if away > level:
+                    inner = math.sqrt(away) - flat
                     lift = z + corner - math.sqrt(max(corner * corner - inner * inner, 0.0))
                 if lift < heights[i, j]:
                     gone[n, 0] += heights[i, j] - lift
@@ -80,7 +82,7 @@ def zmap_cut(
                     heights[i, j] = lift
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def zmap_highest(
     heights: Floats, x0: float, y0: float, cell: float, start: Floats, end: Floats, radius: float
 ) -> float:

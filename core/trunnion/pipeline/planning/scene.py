@@ -22,7 +22,6 @@ from trunnion.plan.contract import PartContext
 from trunnion.plan.setups import held
 from trunnion.progress import Progress
 from trunnion.settings import digest
-from trunnion.toolpath.motion.load import LoadStock
 from trunnion.toolpath.motion.reorient import Pose
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.remaining import RemainingStock
@@ -81,7 +80,6 @@ class SetupScene:
     fixtures: tuple[Fixture, ...]
     handed_on: StockViews | None = None
     sides: StockViews = field(init=False)
-    loads: LoadStock = field(init=False)
     last: OperationPath | None = None
     tool: Tool | None = None
     _made: dict[Hashable, Any] = field(default_factory=dict)
@@ -89,7 +87,6 @@ class SetupScene:
     def __post_init__(self) -> None:
         self.setup = held(self.setup, self.fixtures, self.blank)
         self.sides = StockViews(self.blank) if self.handed_on is None else self.handed_on
-        self.loads = LoadStock(self.blank, self.setup.frame)
 
     def stock(self, setup: Setup) -> PlanningStock:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
