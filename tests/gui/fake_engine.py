@@ -49,6 +49,8 @@ FINDINGS = {
     ),
     "route": (remark("fake.time", "two pockets could share a cutter", "pocket-02", "pocket-03"),),
 }
+FASTEST = 20_000.0
+"""Highest feed of the made-up machine, mm/min."""
 POCKETS = ((8.0, 8.0, 112.0, 132.0), (118.0, 8.0, 232.0, 66.0), (118.0, 74.0, 232.0, 132.0))
 
 
@@ -507,6 +509,19 @@ class FakeEngine:
 
     def with_fix(self, session: Session, fix) -> Session:
         changed = replace(session.process.operation(fix.operation), suppressed=True)
+        return replace(session, process=session.process.with_operation(changed))
+
+    def with_operation_change(self, session: Session, id: str, change) -> Session:
+        operation = session.process.operation(id)
+        if change.feed > FASTEST:
+            raise BadInput(f"{id}: the machine feeds at most {FASTEST:.0f} mm/min")
+        data = replace(
+            operation.data,
+            feed=change.feed or operation.data.feed,
+            spindle=change.spindle or operation.data.spindle,
+        )
+        tool = replace(operation.tool, name=change.tool or operation.tool.name)
+        changed = replace(operation, data=data, tool=tool, by_hand=True)
         return replace(session, process=session.process.with_operation(changed))
 
     def _verify(self, session: Session) -> Session:

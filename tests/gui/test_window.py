@@ -145,6 +145,47 @@ def test_an_operations_own_setting_is_an_edit_by_hand(programmed, idle):
     assert (operation.choices["fake.rough.stepover"], operation.by_hand) == (0.25, True)
 
 
+def typed(field, words: str) -> None:
+    """Type words into a field in place of what it shows, and leave it by the return key."""
+    field.setFocus()
+    field.selectAll()
+    QTest.keyClicks(field, words)
+    QTest.keyClick(field, Qt.Key.Key_Return)
+
+
+def test_a_typed_feed_speed_and_tool_are_edits_by_hand_and_undo_takes_all_back(programmed, idle):
+    before = programmed.document.session
+    programmed.document.selection.select_operation("op-02")
+    for name, words in (
+        ("feed", "1234"),
+        ("spindle", "5600"),
+        ("tool", "AL3-regular D16 R3"),
+    ):
+        typed(programmed.docks.properties.data_form.field(f"operation.{name}"), words)
+        idle(programmed)
+    changed = programmed.document.operation("op-02")
+    assert (changed.data.feed, changed.data.spindle) == (1234.0, 5600.0)
+    assert changed.tool.name == "AL3-regular D16 R3" and changed.by_hand
+    assert programmed.document.history.undo_label == "op-02: Tool AL3-regular D16 R3"
+    for _ in range(3):
+        programmed.registry.run("edit.undo")
+        idle(programmed)
+    assert programmed.document.session is before
+
+
+def test_a_feed_that_the_machine_does_not_have_is_refused_and_the_field_shows_the_old_one(
+    programmed, idle
+):
+    before = programmed.document.session
+    programmed.document.selection.select_operation("op-02")
+    field = programmed.docks.properties.data_form.field("operation.feed")
+    typed(field, "90000")
+    idle(programmed)
+    assert programmed.document.session is before
+    assert "feeds at most 20000 mm/min" in programmed.viewport.notice.text
+    assert field.value() == round(before.process.operation("op-02").data.feed, 1)
+
+
 def test_a_click_on_a_finding_selects_what_it_names(programmed):
     table = programmed.docks.messages.table
     row = next(r for r in range(table.rowCount()) if "leans" in table.item(r, 1).text())

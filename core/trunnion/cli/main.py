@@ -23,6 +23,7 @@ GENERAL = (
     "planning.blank",
     "planning.route",
     "planning.optimize",
+    "planning.change",
     "planning.estimate",
     "programs.program",
     "programs.verify",

@@ -22,6 +22,7 @@ from trunnion.pipeline.context import Context, Contexts
 from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.step import Step
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
+from trunnion.plan.operation_change import OperationChange, with_change
 from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.report.picture_process import Drawing, here
@@ -205,6 +206,17 @@ class Engine:
         raise BadInput(
             f"{words_of(fix)}: no tool of the catalogue serves, or a person set the operation by hand; follow the remedy by hand"
         )
+
+    def with_operation_change(self, session: Session, id: str, change: OperationChange) -> Session:
+        """Return the session with an operation's tool, spindle speed or feed changed by hand, to be computed and proven again.
+
+        Raises `BadInput` for what can't be.
+        """
+        if session.process is None:
+            raise BadCall("no operations yet: generate the route first")
+        shop = self.context_of(session).shop
+        changed = with_change(session.process, id, change, shop, session.choices)
+        return session if changed is session.process else replace(session, process=changed)
 
     def states(self, session: Session) -> dict[str, str]:
         """Return for each step whether it is `empty`, `stale`, `done`, or done with a `problem`."""

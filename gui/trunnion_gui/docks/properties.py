@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from PySide6.QtWidgets import QLabel, QScrollArea, QTableWidget, QVBoxLayout, QWidget
 
 from trunnion.model.feature import Feature
 from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.spindle import FeedMode, SpindleMode
+from trunnion.settings import Value
 from trunnion_gui import edits
 from trunnion_gui.document import Document
 from trunnion_gui.form import Form
@@ -14,10 +17,20 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import kind_label
 from trunnion_gui.look.words import amount, duration, kind_words, sentence, size_unit
 from trunnion_gui.widgets import table as tables
+from trunnion_gui.worker.requests import OPERATION
 
 Rows = list[tuple[str, str]]
 UPRIGHT = (0.0, 0.0, 1.0)
 """The direction of a tool that stands along its setup's z."""
+
+
+def data_choices(operation: Operation) -> dict[str, Value]:
+    """Return what may be changed of an operation's tool and data, by the full keys of its form (`plan.operation_change`)."""
+    return {
+        "operation.tool": operation.tool.name,
+        "operation.spindle": round(operation.data.spindle, 1),
+        "operation.feed": round(operation.data.feed, 1),
+    }
 
 
 def tool_rows(operation: Operation) -> Rows:
@@ -50,6 +63,8 @@ class PropertiesDock(QScrollArea):
         self._document = document
         self._operation = ""
         self.form: Form | None = None
+        self.data_form: Form | None = None
+        self._requested: tuple[str, str, Value] | None = None
         self.setWidgetResizable(True)
         self.setFrameShape(QScrollArea.Shape.NoFrame)
         inside = QWidget()
@@ -174,9 +189,39 @@ class PropertiesDock(QScrollArea):
             or operation is None
             or operation.id != self._operation
         ):
+            self._make_data_form(operation)
             self._make_form(operation)
         if self.form is not None and operation is not None:
             self.form.fill({**self._document.session.choices, **operation.choices})
+        if self.data_form is not None and operation is not None:
+            self._requested = None
+            self.data_form.fill(data_choices(operation))
+
+    def _make_data_form(self, operation: Operation | None) -> None:
+        """Make the form of what any operation of a rotating tool may be given: tool, spindle speed, feed."""
+        if self.data_form is not None:
+            self._forms.removeWidget(self.data_form)
+            self.data_form.deleteLater()
+            self.data_form = None
+        groups = self._document.groups.get(OPERATION, ())
+        if operation is None or not operation.tool.rotates or not groups:
+            return
+        values, id = data_choices(operation), operation.id
+        declared = [replace(s, default=values[s.key]) for s in groups[0].settings]
+        self.data_form = Form(declared)
+        labels = {s.key: s.label for s in declared}
+        self.data_form.changed.connect(
+            lambda key, value, _: self._change_data(id, key, tr(labels[key]), value)
+        )
+        self._forms.addWidget(self.data_form)
+
+    def _change_data(self, id: str, key: str, label: str, value: Value) -> None:
+        """Ask for a change once: a line that is left by the return key and then loses the focus signals twice."""
+        operation = self._document.operation(id)
+        is_new = operation is not None and data_choices(operation)[key] != value
+        if is_new and self._requested != (id, key, value):
+            self._requested = (id, key, value)
+            self._document.change_operation(id, f"{id}: {label} {value}", key, value)
 
     def _make_form(self, operation: Operation | None) -> None:
         if self.form is not None:

@@ -143,6 +143,12 @@ class Document(QObject):
         label = tr("Fix {what}").format(what=fix.operation or fix.reason)
         self.request("fix", label, fix, finish=lambda state: self.keep(label, state))
 
+    def change_operation(self, id: str, label: str, key: str, value: Value) -> None:
+        """Let the planner change an operation's tool, speed or feed: one entry of the history; what depends on it is stale."""
+        self.request(
+            "change", label, id, {key: value}, finish=lambda state: self.keep(label, state)
+        )
+
     # the session
 
     def keep(self, label: str, state: SessionState, drawing: DrawnMesh | None = None) -> None:

@@ -14,7 +14,7 @@ from trunnion.findings import Cancelled, Fix, TrunnionError
 from trunnion.model.session import PostedFile, Session
 from trunnion.post.release import release
 from trunnion.progress import Progress
-from trunnion.settings import Declared, declared
+from trunnion.settings import Declared, Value, choose, declared
 from trunnion_gui.worker.drawing import DrawnMesh, drawing_of, drawn_map
 from trunnion_gui.worker.steps import share, until
 
@@ -48,6 +48,8 @@ class SettingsGroup:
     settings: tuple[Declared, ...]
 
 
+OPERATION = "operation"
+"""Among the groups of settings by step: what may be changed of a single operation."""
 SendEvent = Callable[[str, Any], None]
 Work = Callable[..., Any]
 _writing: set[Work] = set()
@@ -151,6 +153,20 @@ def _fix(
     return state_of(engine, engine.with_fix(session, fix))
 
 
+def _change(
+    engine: Any,
+    _progress: Progress,
+    _send_event: SendEvent,
+    session: Session,
+    operation: str,
+    values: dict[str, Value],
+) -> SessionState:
+    from trunnion.plan.operation_change import OperationChange
+
+    change = choose(OperationChange, values)
+    return state_of(engine, engine.with_operation_change(session, operation, change))
+
+
 @writes_files
 def _save(
     engine: Any, progress: Progress, _send_event: SendEvent, session: Session, path: str
@@ -188,12 +204,14 @@ def _deviation(engine: Any, progress: Progress, _send_event: SendEvent, session:
 def _settings(
     engine: Any, _progress: Progress, _send_event: SendEvent
 ) -> dict[str, tuple[SettingsGroup, ...]]:
+    from trunnion.plan.operation_change import OperationChange
+
     return {
         step: tuple(
             SettingsGroup(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c)))
             for c in classes
         )
-        for step, classes in engine.settings().items()
+        for step, classes in (*engine.settings().items(), (OPERATION, (OperationChange,)))
     }
 
 
@@ -218,6 +236,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "states": _states,
     "attach": _attach,
     "fix": _fix,
+    "change": _change,
     "save": _save,
     "write": _write,
     "settings": _settings,

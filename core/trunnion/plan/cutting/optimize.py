@@ -32,7 +32,7 @@ def balance(
     material, done = shop.material(process.material), list[Operation]()
     for operation in process.operations:
         own = choose(CuttingSettings, {**choices, **operation.choices})
-        balanced = _balanced(
+        balanced = recomputed(
             operation, process, material, shop, own if _of_its_own(operation) else settings
         )
         done.append(
@@ -46,13 +46,14 @@ def _of_its_own(operation: Operation) -> bool:
     return any(d.key in operation.choices for d in declared(CuttingSettings))
 
 
-def _balanced(
+def recomputed(
     operation: Operation,
     process: ProcessTree,
     material: Material,
     shop: Shop,
     settings: CuttingSettings,
 ) -> Operation:
+    """Return an operation with the data of the tables under these limits; one that a person set by hand as it is."""
     if operation.by_hand:
         return operation
     machine = shop.machine(process.setup(operation.setup).machine)

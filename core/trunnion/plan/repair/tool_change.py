@@ -87,8 +87,10 @@ def _same_foot(tool: Tool, now: Tool, finishes: bool) -> bool:
     return now.form == "ball" or abs(tool.corner_radius - now.corner_radius) <= tolerance.COINCIDENT
 
 
-def with_cutter(process: ProcessTree, operation: Operation, tool: Tool) -> ProcessTree:
-    """Return the process with another cutter for an operation; what mills after it knows its new name."""
+def with_cutter(
+    process: ProcessTree, operation: Operation, tool: Tool, why: str = WHY
+) -> ProcessTree:
+    """Return the process with another cutter for an operation, `why` in words; what mills after it knows its new name."""
     now = operation.cutter
     data = operation.data
     share = tool.diameter / now.diameter
@@ -96,7 +98,7 @@ def with_cutter(process: ProcessTree, operation: Operation, tool: Tool) -> Proce
         operation,
         tool=tool,
         data=replace(data, width=min(data.width * share, tool.diameter)),
-        rules=(*operation.rules, f"{tool.name} instead of {now.name}: {WHY}."),
+        rules=(*operation.rules, f"{tool.name} instead of {now.name}: {why}."),
     )
     done = process.with_operation(changed)
     faces = set(operation.faces)
