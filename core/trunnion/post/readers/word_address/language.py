@@ -101,7 +101,8 @@ class ControlLanguage:
             role.get("length", ""),
         )
         self.arc = frozenset(("I", "J", self.radius))
-        self.moves = self.arc | set("XYZ") | set(self.rotary)
+        self.directions = self.words.directions if work_position else ()
+        self.moves = self.arc | set("XYZ") | set(self.rotary) | set(self.directions)
         self.takers: dict[str, tuple[str, ...]] = {}
         for name, meaning in _TAKEN_BY.items():
             if name in role and (
