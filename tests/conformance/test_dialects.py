@@ -97,8 +97,8 @@ def holes(kind: CycleKind, lift: float) -> Toolpath:
 
 
 def is_the_controls_own(kind: CycleKind, lift: float, read: Toolpath, planned: Toolpath) -> bool:
-    """Say whether a control cuts a hole a little other than planned, along the same line: it may feed where chips are broken instead of going
-    in rapid, and leave a thread's last stroke out at the retract plane."""
+    """Say whether a control cuts a hole a little other than planned, along the same line: it may feed where chips are broken instead of
+    going in rapid, and leave a thread's last stroke out at the retract plane."""
     if len(read) == len(planned) and (read.motion == planned.motion).all():
         return False
     assert kind is CycleKind.CHIP_BREAK or (kind is CycleKind.TAP and lift > 0.0)

@@ -46,10 +46,10 @@ class IsoDialect:
     ) -> str:
         """Return the text of one setup's program."""
         self._check_one(programs)
-        place = work_positions.get(programs[0].setup.name)
-        follows = self.words.directions and place is not None and place.machine.rotary
+        work_position = work_positions.get(programs[0].setup.name)
+        follows = self.words.directions and work_position and work_position.machine.rotary
         writer_class = TipWriter if follows else ProgramWriter
-        writer = writer_class(self.words, programs[0], settings, place)
+        writer = writer_class(self.words, programs[0], settings, work_position)
         return "\n".join(writer.lines(header)) + "\n"
 
     def stamp(self, program: str, header: Header) -> tuple[str, ...]:

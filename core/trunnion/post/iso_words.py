@@ -33,7 +33,16 @@ _PLACEHOLDERS = {
 }
 """What may stand in braces in the lines of a word."""
 _CALL = (
-    "end", "plane", "bottom", "first", "peck", "back_off", "dwell", "feed", "pitch", "spindle",
+    "end",
+    "plane",
+    "bottom",
+    "first",
+    "peck",
+    "back_off",
+    "dwell",
+    "feed",
+    "pitch",
+    "spindle",
 )
 """What may stand in braces in a cycle call."""
 PLANE_ORDERS = ("XYZ", "ZXZ")
@@ -176,7 +185,9 @@ def _check_directions(name: str, words: IsoWords) -> None:
     if len(words.directions) != 3 or words.plane_order not in PLANE_ORDERS or missing:
         what = f"{missing[0]} is missing" if missing else "directions must be three words"
         if words.plane_order not in PLANE_ORDERS:
-            what = f"plane_order must be one of {', '.join(PLANE_ORDERS)}; got {words.plane_order!r}"
+            what = (
+                f"plane_order must be one of {', '.join(PLANE_ORDERS)}; got {words.plane_order!r}"
+            )
         raise BadInput(f"dialect {name}: {what}")
 
 

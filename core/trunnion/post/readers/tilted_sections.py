@@ -34,7 +34,7 @@ SAME_DIRECTION = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DirectedPoses:
+class TipPoses:
     """Points are tips in the setup frame and the unit axis of the tool, on a machine that has to hold it."""
 
     work_position: WorkPosition
@@ -78,7 +78,7 @@ class TiltedSections(Sections):
     while it is not known.
     """
 
-    def __init__(self, poses: DirectedPoses) -> None:
+    def __init__(self, poses: TipPoses) -> None:
         super().__init__(poses)
         self.matrix = np.eye(3)
         self.known = self.follows = False

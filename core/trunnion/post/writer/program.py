@@ -101,9 +101,9 @@ class ProgramWriter:
         if self.turns:
             yield "X IS A DIAMETER WHILE THE WORK TURNS"
         if self.work_position is not None:
-            yield from self.standing(self.work_position)
+            yield from self.work_position_lines(self.work_position)
 
-    def standing(self, work_position: WorkPosition) -> Iterator[str]:
+    def work_position_lines(self, work_position: WorkPosition) -> Iterator[str]:
         """Yield the lines of the header that say where the work stands, and what follows for the words."""
         yield from work_position_lines(self.program.setup, work_position, self.settings.units)
 

@@ -17,7 +17,8 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class TiltedPlane:
-    """A plane through the origin of the setup: `ticks` are its three angles as they are written, `matrix` (3, 3) has its axes as columns."""
+    """A plane through the origin of the setup: `ticks` are its three angles as they are written, `matrix` (3, 3) has its axes as
+    columns."""
 
     ticks: tuple[int, int, int]
     matrix: Floats
@@ -43,9 +44,9 @@ def plane_across(axis: Floats, order: str, degrees: TickScale) -> TiltedPlane:
         lean = math.atan2(math.hypot(x, y), z)
         angles = [math.atan2(x, -y) if lean > UPRIGHT else 0.0, lean, 0.0]
     ticks = tuple(degrees.ticks(np.degrees(angles)).tolist())
-    first, second, third = np.radians(np.array(ticks) / 10.0**degrees.decimals)
-    a, b, c = order
-    return TiltedPlane(ticks=ticks, matrix=_about(a, first) @ _about(b, second) @ _about(c, third))
+    turns = zip(order, np.radians(np.array(ticks) / 10.0**degrees.decimals).tolist(), strict=True)
+    matrix = np.linalg.multi_dot([_about(letter, angle) for letter, angle in turns])
+    return TiltedPlane(ticks=ticks, matrix=matrix)
 
 
 def plane_rows(path: Toolpath) -> tuple[int, int] | None:

@@ -55,8 +55,8 @@ class TipState(WrittenState):
 class TipWriter(ProgramWriter):
     """Writes one setup's program for a machine with rotary axes whose control follows the tip.
 
-    `tilted` is the plane in force, None while the control follows the tip or before the first section; `axis` (3,) is the direction that the last
-    section has left the tool in.
+    `tilted` is the plane in force, None while the control follows the tip or before the first section; `axis` (3,) is the direction that
+    the last section has left the tool in.
     """
 
     tilted: TiltedPlane | None = None
@@ -74,7 +74,7 @@ class TipWriter(ProgramWriter):
         """Return a state that knows of vectors."""
         return TipState(self.words, self.settings)
 
-    def standing(self, work_position: WorkPosition) -> Iterator[str]:
+    def work_position_lines(self, work_position: WorkPosition) -> Iterator[str]:
         """Yield where the work stands; no word depends on it, but the rotary axes of the machine can."""
         yield work_position_lines(self.program.setup, work_position, self.settings.units)[0]
         yield "WORDS ARE POSITIONS OF THE TIP IN THE WORK AND DIRECTIONS OF THE TOOL"
@@ -160,11 +160,11 @@ class TipWriter(ProgramWriter):
 
         It is up along the machine's Z: so a tool comes down on a machine whose head leans.
         """
-        place = self.work_position
-        assert place is not None
+        work_position = self.work_position
+        assert work_position is not None
         setup = point if plane is None else plane.matrix @ point
-        lift = lift_of(place, angle)
-        more = place.radius - float((setup - place.centre) @ lift)
+        lift = lift_of(work_position, angle)
+        more = work_position.radius - float((setup - work_position.centre) @ lift)
         return (
             None
             if more <= tolerance.WRITTEN
@@ -218,4 +218,3 @@ class TipWriter(ProgramWriter):
         of_head = [v for a, v in zip(rotary, angle.tolist(), strict=True) if a.carries == "tool"]
         mixed = len({a.carries for a in rotary}) > 1
         return float(of_head[0] if mixed else angle[0])
-

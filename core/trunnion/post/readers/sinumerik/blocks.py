@@ -14,7 +14,7 @@ _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 _STRING = r'"[^"]*"'
 _WORD = re.compile(
     rf"""\s*(?:
-    (?P<call>[A-Z_][A-Z0-9_]+)\s*\((?P<arguments>(?:{_STRING}|[^()"])*)\)
+    (?P<call>[A-Z_][A-Z0-9_]+)\((?P<arguments>(?:{_STRING}|[^()"])*)\)
     |(?P<set>[A-Z][A-Z0-9_]*)\s*=\s*(?:(?P<value>{_NUMBER})(?![A-Z0-9_.(*/])|(?P<text>{_STRING}))
     |(?P<name>[A-Z][A-Z_]+[0-9]*)(?![A-Z0-9_=(])
     |(?P<letter>[A-Z])(?P<number>{_NUMBER})(?![=(])
@@ -60,12 +60,12 @@ def _block(line: int, program: str, number_of: Callable[[int, str], float]) -> B
     words: dict[str, float] = {}
     call: tuple[str, tuple[str, ...]] | None = None
     upper = _upper(program)
-    place = 0
-    while place < len(upper):
-        found = _WORD.match(upper, place)
+    at = 0
+    while at < len(upper):
+        found = _WORD.match(upper, at)
         if found is None:
-            raise BadInput(f"line {line}: {_why_not(upper[place:].strip())}")
-        part, place = found.groupdict(), found.end()
+            raise BadInput(f"line {line}: {_why_not(upper[at:].strip())}")
+        part, at = found.groupdict(), found.end()
         if part["call"]:
             if call is not None:
                 raise BadInput(f"line {line}: two calls; write two lines")
@@ -84,6 +84,10 @@ def _block(line: int, program: str, number_of: Callable[[int, str], float]) -> B
             _set(line, words, part["letter"], float(part["number"]) + 0.0)
         else:
             name = part["set"]
+            if re.fullmatch(r"R[0-9]+", name):
+                raise BadInput(
+                    f"line {line}: parameters ({name}=) are not understood; write the numbers themselves"
+                )
             _set(line, words, name if len(name) == 1 else name + "=", float(part["value"]) + 0.0)
     if "G4" in codes:
         if "S" in words:
@@ -107,15 +111,17 @@ def _arguments(line: int, name: str, text: str) -> tuple[str, ...]:
     """Return the arguments of a call, without their spaces."""
     if not text.strip():
         return ()
-    found, place = [], 0
-    while place <= len(text):
-        part = _ARGUMENT.match(text, place)
+    found, at = [], 0
+    while at <= len(text):
+        part = _ARGUMENT.match(text, at)
         if part is None:
-            raise BadInput(f"line {line}: the arguments of {name} are not understood; part them by commas")
+            raise BadInput(
+                f"line {line}: the arguments of {name} are not understood; part them by commas"
+            )
         found.append(part.group(1).strip())
         if part.end() == len(text) and not part.group(0).endswith(","):
             break
-        place = part.end()
+        at = part.end()
     return tuple(found)
 
 

@@ -28,7 +28,7 @@ PARAMETERS: Mapping[str, tuple[str, ...]] = {
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 
 
-class CallArguments:
+class CallParameters:
     """The arguments of one call, by the names of its parameters."""
 
     def __init__(self, block: CallBlock) -> None:

@@ -11,7 +11,7 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.model.motion.cycle import MOST_PECKS
 from trunnion.post.readers.numbers import DWELL, FEED, SPINDLE
-from trunnion.post.readers.sinumerik.calls import CallArguments
+from trunnion.post.readers.sinumerik.calls import CallParameters
 
 CHIP_BREAK = 1.0
 """mm: how far CYCLE83 backs off to break chips where VRT is left out."""
@@ -22,8 +22,8 @@ CLOCKWISE = 3.0
 
 
 class HoleStroke(NamedTuple):
-    """One move of a cycle to a height Z in mm, aside by `shift` (x, y) mm; `feed` mm/min or mm a revolution, 0 for that in force, None for a
-    rapid."""
+    """One move of a cycle to a height Z in mm, aside by `shift` (x, y) mm; `feed` mm/min or mm a revolution, 0 for the one in force, None
+    for a rapid."""
 
     height: float
     feed: float | None
@@ -32,7 +32,7 @@ class HoleStroke(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CalledCycle:
+class CycleCall:
     """A drilling cycle as a call says it: the strokes at each hole; a `tap` has a spindle speed in 1/min of its own, else 0."""
 
     name: str
@@ -49,15 +49,15 @@ class _Heights(NamedTuple):
     bottom: float
 
 
-def called_cycle(given: CallArguments, unit: float) -> CalledCycle:
-    """Return what a call makes the tool do at a hole, lengths of `unit` mm; raise `BadInput` for what makes no hole or is not understood."""
+def cycle_of_call(given: CallParameters, unit: float) -> CycleCall:
+    """Return what a call makes the tool do at a hole, lengths of `unit` mm; raise `BadInput` for what makes none."""
     heights = _heights(given, unit)
     strokes = [HoleStroke(heights.plane, None), *_STROKES[given.name](given, heights, unit)]
     spindle = given.number("SST", 0.0) if given.name == "CYCLE84" else 0.0
-    return CalledCycle(name=given.name, strokes=tuple(strokes), spindle=spindle)
+    return CycleCall(name=given.name, strokes=tuple(strokes), spindle=spindle)
 
 
-def _heights(given: CallArguments, unit: float) -> _Heights:
+def _heights(given: CallParameters, unit: float) -> _Heights:
     end, reference = given.number("RTP") * unit, given.number("RFP") * unit
     plane = reference + abs(given.number("SDIS", 0.0)) * unit
     if bool(given.text("DP")) == bool(given.text("DPR")):
@@ -86,20 +86,29 @@ def _out(at: _Heights) -> Iterator[HoleStroke]:
         yield HoleStroke(at.end, None)
 
 
-def _dwell(given: CallArguments, name: str = "DTB") -> float:
+def _dwell(given: CallParameters, name: str = "DTB") -> float:
     seconds = given.number(name, 0.0)
     DWELL.check(given.line, f"{given.name} {name} ", seconds)
     return seconds
 
 
-def _drill(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStroke]:
+def _drill(given: CallParameters, at: _Heights, unit: float) -> Iterator[HoleStroke]:
     yield HoleStroke(at.bottom, 0.0, _dwell(given))
     yield HoleStroke(at.end, None)
 
 
-def _peck(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStroke]:
+def _peck(given: CallParameters, at: _Heights, unit: float) -> Iterator[HoleStroke]:
     """Yield the strokes of deep drilling, without degression: out to the plane after each (VARI 1), or back a little (VARI 0)."""
-    given.only({"DAM": (0.0,), "DTB": (0.0,), "FRF": (1.0, 0.0), "VARI": (0.0, 1.0), "AXN": (3.0, 0.0), "MDEP": (0.0,)})
+    given.only(
+        {
+            "DAM": (0.0,),
+            "DTB": (0.0,),
+            "FRF": (1.0, 0.0),
+            "VARI": (0.0, 1.0),
+            "AXN": (3.0, 0.0),
+            "MDEP": (0.0,),
+        }
+    )
     depth = at.reference - at.bottom
     if given.text("FDEP"):
         first = at.plane - given.number("FDEP") * unit
@@ -116,7 +125,9 @@ def _peck(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStrok
         )
     pecks = max(1, math.ceil((at.plane - at.bottom - tolerance.COINCIDENT) / first))
     if pecks > MOST_PECKS:
-        raise BadInput(f"line {given.line}: {given.name} with {pecks} pecks, at most {MOST_PECKS} are understood")
+        raise BadInput(
+            f"line {given.line}: {given.name} with {pecks} pecks, at most {MOST_PECKS} are understood"
+        )
     above = _dwell(given, "DTS")
     for k in range(1, pecks):
         yield HoleStroke(at.plane - k * first, 0.0)
@@ -127,19 +138,19 @@ def _peck(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStrok
     yield HoleStroke(at.end, None)
 
 
-def _ream(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStroke]:
+def _ream(given: CallParameters, at: _Heights, unit: float) -> Iterator[HoleStroke]:
     yield HoleStroke(at.bottom, _feed(given, "FFR", unit), _dwell(given))
     yield HoleStroke(at.plane, _feed(given, "RFF", unit))
     yield from _out(at)
 
 
-def _bore(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStroke]:
+def _bore(given: CallParameters, at: _Heights, unit: float) -> Iterator[HoleStroke]:
     yield HoleStroke(at.bottom, 0.0, _dwell(given))
     yield HoleStroke(at.plane, 0.0)
     yield from _out(at)
 
 
-def _bore_aside(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStroke]:
+def _bore_aside(given: CallParameters, at: _Heights, unit: float) -> Iterator[HoleStroke]:
     """Yield the strokes of boring with a spindle that stops in a position: the tool leaves the wall before it goes out."""
     given.only({"SDIR": (CLOCKWISE,)})
     aside = (given.number("RPA", 0.0) * unit, given.number("RPO", 0.0) * unit)
@@ -150,7 +161,7 @@ def _bore_aside(given: CallArguments, at: _Heights, unit: float) -> Iterator[Hol
     yield HoleStroke(at.end, None)
 
 
-def _tap(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStroke]:
+def _tap(given: CallParameters, at: _Heights, unit: float) -> Iterator[HoleStroke]:
     """Yield the strokes of rigid tapping: in and out to the plane at the pitch a revolution, the spindle reversed."""
     given.only({"SDAC": (CLOCKWISE, 5.0), "MPIT": (0.0,)})
     pitch, turns = given.number("PIT") * unit, given.number("SST")
@@ -166,14 +177,14 @@ def _tap(given: CallArguments, at: _Heights, unit: float) -> Iterator[HoleStroke
     yield from _out(at)
 
 
-def _feed(given: CallArguments, name: str, unit: float) -> float:
+def _feed(given: CallParameters, name: str, unit: float) -> float:
     feed = given.number(name, 0.0)
     if feed:
         FEED.check(given.line, f"{given.name} {name} ", feed)
     return feed * unit
 
 
-_STROKES: Mapping[str, Callable[[CallArguments, _Heights, float], Iterator[HoleStroke]]] = {
+_STROKES: Mapping[str, Callable[[CallParameters, _Heights, float], Iterator[HoleStroke]]] = {
     "CYCLE81": _drill,
     "CYCLE82": _drill,
     "CYCLE83": _peck,

@@ -50,7 +50,9 @@ class Directions(Rotary):
         if not self.sections.follows:
             raise BadInput(f"line {block.line}: {listed} without TRAORI; put TRAORI first")
         if math.hypot(*(block.words.get(word, 0.0) for word in self.words)) < LEAST_VECTOR:
-            raise BadInput(f"line {block.line}: {listed} is no direction; give a vector of length 1")
+            raise BadInput(
+                f"line {block.line}: {listed} is no direction; give a vector of length 1"
+            )
 
     def refuse_far_turn(self, line: int, before: Point, after: list[float]) -> None:
         """Raise `BadInput` for a turn straight back: there is no one plane to turn in."""

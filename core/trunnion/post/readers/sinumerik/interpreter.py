@@ -15,7 +15,7 @@ from trunnion.post.readers.sinumerik.blocks import DWELL_WORD, split_sinumerik_l
 from trunnion.post.readers.sinumerik.directions import Directions
 from trunnion.post.readers.sinumerik.modes import SinumerikModes
 from trunnion.post.readers.sinumerik.moves import SinumerikMover
-from trunnion.post.readers.tilted_sections import DirectedPoses, TiltedSections
+from trunnion.post.readers.tilted_sections import TiltedSections, TipPoses
 from trunnion.post.readers.word_address.blocks import Block
 from trunnion.post.readers.word_address.interpreter import Control
 from trunnion.post.readers.word_address.rotary import Rotary
@@ -44,7 +44,7 @@ class SinumerikControl(Control):
         """Return what gathers the motions: tips, on a machine with rotary axes with the tool's direction."""
         if self.work_position is None:
             return Sections(UprightPoses(setup.clearance))
-        return TiltedSections(DirectedPoses(self.work_position, setup.clearance))
+        return TiltedSections(TipPoses(self.work_position, setup.clearance))
 
     def rotary_axes(self) -> Rotary:
         """Return what keeps the tool's direction."""
@@ -75,7 +75,11 @@ class SinumerikControl(Control):
         if modes.called is not None:
             cycle, modes.called = modes.called, None
             moves.cut_cycle(block, cycle)
-        elif before is not None and before is modes.cycle and not {"X", "Y", "Z"}.isdisjoint(block.words):
+        elif (
+            before is not None
+            and before is modes.cycle
+            and not {"X", "Y", "Z"}.isdisjoint(block.words)
+        ):
             if self.language.machine in block.codes:
                 raise BadInput(
                     f"line {block.line}: {self.language.machine} while {before.name} is in force; put MCALL first"

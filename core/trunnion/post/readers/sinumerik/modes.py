@@ -10,8 +10,8 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.post.readers.sinumerik.blocks import CallBlock
-from trunnion.post.readers.sinumerik.calls import CallArguments
-from trunnion.post.readers.sinumerik.cycles import CalledCycle, called_cycle
+from trunnion.post.readers.sinumerik.calls import CallParameters
+from trunnion.post.readers.sinumerik.cycles import CycleCall, cycle_of_call
 from trunnion.post.readers.tilted_sections import SAME_DIRECTION, TiltedSections
 from trunnion.post.readers.word_address.blocks import Block
 from trunnion.post.readers.word_address.modes import Modes
@@ -29,7 +29,7 @@ AXES = {1: 0, 2: 1, 3: 2}
 
 
 class SinumerikModes(Modes):
-    """Works off the codes of a Sinumerik text. `cycle` is in force for the positions that follow, `called` is to be cut where the tool is."""
+    """Works off the codes of a Sinumerik text. `cycle` is in force for positions, `called` is to be cut where the tool is."""
 
     own = {
         "tip control": "follow_tip",
@@ -39,13 +39,15 @@ class SinumerikModes(Modes):
         "modal call": "end_cycle",
         "cycle call": "call_cycle",
     }
-    cycle: CalledCycle | None = None
-    called: CalledCycle | None = None
+    cycle: CycleCall | None = None
+    called: CycleCall | None = None
 
     def set_length(self, block: Block) -> None:
         """Count the length of the tool in the spindle: its first cutting edge."""
         if self.state.tool is None:
-            raise BadInput(f"line {block.line}: D before a tool is in the spindle; put T and M6 first")
+            raise BadInput(
+                f"line {block.line}: D before a tool is in the spindle; put T and M6 first"
+            )
         if block.words["D"] != FIRST_EDGE:
             raise BadInput(
                 f"line {block.line}: D{block.words['D']:g} is a cutting edge that the tool list does not have; use D1"
@@ -56,9 +58,13 @@ class SinumerikModes(Modes):
         """Follow the tip from here on: points are tips in the work, directions are vectors."""
         sections = self.tilted(block, "TRAORI")
         if isinstance(block, CallBlock) and block.arguments not in ((), ("1",)):
-            raise BadInput(f"line {block.line}: of TRAORI only the first transformation is understood; write TRAORI")
+            raise BadInput(
+                f"line {block.line}: of TRAORI only the first transformation is understood; write TRAORI"
+            )
         if not self.is_level(sections):
-            raise BadInput(f"line {block.line}: TRAORI in a tilted plane is not understood; put CYCLE800() first")
+            raise BadInput(
+                f"line {block.line}: TRAORI in a tilted plane is not understood; put CYCLE800() first"
+            )
         axis = sections.axis
         sections.tilt(np.eye(3), False)
         sections.axis, sections.follows = axis, True
@@ -73,9 +79,13 @@ class SinumerikModes(Modes):
         """Tilt the plane of the program and the tool with it, or take that back."""
         sections = self.tilted(block, "CYCLE800")
         if not isinstance(block, CallBlock):
-            raise BadInput(f"line {block.line}: CYCLE800 without its parameters; write CYCLE800() to end it")
+            raise BadInput(
+                f"line {block.line}: CYCLE800 without its parameters; write CYCLE800() to end it"
+            )
         if sections.follows:
-            raise BadInput(f"line {block.line}: CYCLE800 under TRAORI is not understood; put TRAFOOF first")
+            raise BadInput(
+                f"line {block.line}: CYCLE800 under TRAORI is not understood; put TRAFOOF first"
+            )
         if not block.arguments:
             axis, level = sections.axis, self.is_level(sections)
             sections.tilt(np.eye(3), sections.known and level)
@@ -83,10 +93,10 @@ class SinumerikModes(Modes):
             return
         if not self.state.length_on:
             raise BadInput(f"line {block.line}: CYCLE800 without the tool's length; put D1 first")
-        matrix = plane_of(CallArguments(block))
-        still = sections.axis is not None and sections.known
-        still = still and float(np.linalg.norm(matrix[:, 2] - sections.axis)) <= SAME_DIRECTION
-        if sections.at is not None and not still:
+        matrix = plane_of(CallParameters(block))
+        axis = sections.axis if sections.known else None
+        keeps = axis is not None and np.linalg.norm(matrix[:, 2] - axis) <= SAME_DIRECTION
+        if sections.at is not None and not keeps:
             raise BadInput(
                 f"line {block.line}: CYCLE800 turns the tool while it is at the work; put SUPA G0 Z0 D0 first"
             )
@@ -96,7 +106,7 @@ class SinumerikModes(Modes):
         """Check how far CYCLE832 lets the control leave the path."""
         if not isinstance(block, CallBlock) or not block.arguments:
             return
-        given = CallArguments(block)
+        given = CallParameters(block)
         kind, limit = given.text("TOLM").upper() or "0", given.number("TOL", 0.0) * self.state.unit
         if kind not in (*SMOOTHINGS, *ORIENTED):
             raise BadInput(
@@ -122,7 +132,7 @@ class SinumerikModes(Modes):
         if not isinstance(block, CallBlock):
             name = next(c for c in block.codes if self.language.meanings[c] == "cycle call")
             raise BadInput(f"line {block.line}: {name} without its parameters")
-        cycle = called_cycle(CallArguments(block), self.state.unit)
+        cycle = cycle_of_call(CallParameters(block), self.state.unit)
         if "MCALL" in block.codes:
             self.cycle = cycle
         else:
@@ -141,13 +151,13 @@ class SinumerikModes(Modes):
         return bool((sections.matrix == np.eye(3)).all())
 
 
-def plane_of(given: CallArguments) -> Floats:
+def plane_of(given: CallParameters) -> Floats:
     """Return the axes (3, 3), as columns, of the plane that CYCLE800 tilts to; raise `BadInput` for what is not understood of it."""
     given.only(
         {
             "FR": (0.0,),
             "MODE": tuple(float(m) for m in MODES),
-            **{name: (0.0,) for name in ("X0", "Y0", "Z0", "X1", "Y1", "Z1", "FR_I")},
+            **dict.fromkeys(("X0", "Y0", "Z0", "X1", "Y1", "Z1", "FR_I"), (0.0,)),
             "DIR": (-1.0, 1.0, 0.0),
         }
     )

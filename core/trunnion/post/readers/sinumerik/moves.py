@@ -12,7 +12,7 @@ from trunnion.model.spindle import FeedMode, per_minute
 from trunnion.model.tool import AnyTool
 from trunnion.post.readers.numbers import NumberRange
 from trunnion.post.readers.sections import NOWHERE, CuttingState, Pace, Point
-from trunnion.post.readers.sinumerik.cycles import CalledCycle, HoleStroke
+from trunnion.post.readers.sinumerik.cycles import CycleCall, HoleStroke
 from trunnion.post.readers.sinumerik.directions import Directions
 from trunnion.post.readers.tilted_sections import TiltedSections
 from trunnion.post.readers.word_address.blocks import Block
@@ -49,16 +49,23 @@ class SinumerikMover(ToolMover):
         assert isinstance(self.rotary, Directions)
         sections, line, letters = self.rotary.sections, block.line, self.language.rotary
         others = set(block.words) - set(letters) - {"N"}
-        if sections.follows or sections.at is not None or others or self.state.motion != Motion.RAPID:
+        if (
+            sections.follows
+            or sections.at is not None
+            or others
+            or self.state.motion != Motion.RAPID
+        ):
             raise BadInput(
                 f"line {line}: {' and '.join(letters)} are understood in a rapid of their own at the top of the machine; elsewhere "
                 f"use {' '.join(self.language.directions)} under TRAORI"
             )
         missing = [letter for letter in letters if letter not in block.words]
         if missing:
-            raise BadInput(f"line {line}: give {' and '.join(missing)} too, so that it is known where the rotary axes stand")
-        place = sections.interpreter.work_position  # type: ignore[attr-defined]
-        sections.turned_away(np.radians([block.words[letter] for letter in letters]), place)
+            raise BadInput(
+                f"line {line}: give {' and '.join(missing)} too, so that it is known where the rotary axes stand"
+            )
+        work_position = sections.interpreter.work_position  # type: ignore[attr-defined]
+        sections.turned_away(np.radians([block.words[letter] for letter in letters]), work_position)
 
     def first_target(self, block: Block, motion: Motion, tool: AnyTool) -> Point | None:
         """Return the end of a move after a tool change; under TRAORI it says all of X, Y and Z."""
@@ -120,7 +127,7 @@ class SinumerikMover(ToolMover):
                 super().feed(block, motion, end, (*centre[:2], start[2] + (k - 1) * climb), tool)
         super().feed(block, motion, point, centre, tool)
 
-    def cut_cycle(self, block: Block, cycle: CalledCycle) -> None:
+    def cut_cycle(self, block: Block, cycle: CycleCall) -> None:
         """Cut a hole where the tool is as a cycle says."""
         state, line, start = self.state, block.line, self.at
         tool = self.ready(line)
@@ -128,7 +135,11 @@ class SinumerikMover(ToolMover):
             raise BadInput(
                 f"line {line}: a cycle before it is known where the tool is; begin with a rapid to X, Y and Z"
             )
-        if state.in_zx or state.feed_mode is FeedMode.INVERSE or start[3:] not in ((), (0.0, 0.0, 1.0)):
+        if (
+            state.in_zx
+            or state.feed_mode is FeedMode.INVERSE
+            or start[3:] not in ((), (0.0, 0.0, 1.0))
+        ):
             raise BadInput(
                 f"line {line}: {cycle.name} while the work turns, in inverse time or with a leaning tool is not understood; "
                 "use CYCLE800, or write the moves out"
@@ -141,7 +152,12 @@ class SinumerikMover(ToolMover):
         if cycle.spindle:
             cutting = CuttingState(cycle.spindle, cutting.coolant)
         for n, stroke in enumerate(cycle.strokes):
-            point = (start[0] + stroke.shift[0], start[1] + stroke.shift[1], stroke.height, *start[3:])
+            point = (
+                start[0] + stroke.shift[0],
+                start[1] + stroke.shift[1],
+                stroke.height,
+                *start[3:],
+            )
             if n == 0 and point == self.at:
                 continue
             if stroke.feed is None:

@@ -29,7 +29,8 @@ from trunnion.shop.kinematics import WorkPosition
 class Control:
     """The control of one text. What only one control does is in a class derived from this.
 
-    `modes_class` works off its codes, `mover_class` moves the tool; `brackets` says that comments stand in brackets too, beside those after a semicolon.
+    `modes_class` works off its codes, `mover_class` moves the tool; `brackets` says that comments stand in brackets too,
+    beside those after a semicolon.
     """
 
     modes_class: ClassVar[type[Modes]] = Modes
