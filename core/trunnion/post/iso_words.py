@@ -63,7 +63,7 @@ class IsoWords:
     and `return_levels` those that end them at the level where they began and at the retract plane; `cycle_calls` are lines that say a cycle
     for the positions after them, up to `cycle_end`. With `directions`, words of the three numbers of a tool axis, the control follows the
     tip by itself between `tip_control` and `no_tip_control`; `plane` tilts the plane of the program, by `plane_order`, and `no_plane` takes
-    that back. `turning` chooses the plane ZX with X
+    that back. `whole_turns` is the word of a helix for turns beside its last. `turning` chooses the plane ZX with X
     as a diameter, without it the control does not turn work; `milling` is said in the other sections of a program that does.
     """
 
@@ -99,6 +99,7 @@ class IsoWords:
     spindle_speed: str = ""
     turning: str = ""
     milling: str = ""
+    whole_turns: str = ""
     return_levels: tuple[str, str] = ("", "")
     cycles: dict[str, str] = field(default_factory=dict)
     cycle_calls: dict[str, str] = field(default_factory=dict)

@@ -192,6 +192,31 @@ def test_helices_of_several_turns_and_radii_are_read():
     assert path.centre[-1] == approx([0.0, 0.0, -5.0])
 
 
+def test_a_helix_of_several_turns_is_one_block():
+    # 2.5 turns about (0, 0) from (8, 0) down by 1 mm a turn, then a flat turn and a half more.
+    ends = [(8.0, -1.0), (8.0, -2.0), (-8.0, -2.5), (-8.0, -2.5), (8.0, -2.5)]
+    n = len(ends)
+    path = Toolpath(
+        position=[
+            (8.0, 0.0, 50.0),
+            (8.0, 0.0, 0.0),
+            *((x, 0.0, z) for x, z in ends),
+            (8.0, 0.0, 50.0),
+        ],
+        axis=[[0.0, 0.0, 1.0]] * (n + 3),
+        motion=[Motion.RAPID, Motion.LINE, *[Motion.ARC_CCW] * n, Motion.RAPID],
+        centre=[[np.nan] * 3] * 2 + [[0.0, 0.0, 0.0]] * n + [[np.nan] * 3],
+        feed=[0.0, 500.0, *[800.0] * n, 0.0],
+        mark=[0] * (n + 3),
+    )
+    made = Program(name="B1.S1", setup=S1, sections=(section("bore", FLAT_16, path),))
+    arcs = [line for line in lines_of(made) if "J0" in line]
+    assert arcs == ["G3 X-8 Y0 Z-2.5 I-8 J0 F800 TURN=2", "X8 Y0 I8 J0 TURN=1"]
+    text = SinumerikDialect().write([made], HEADER, PostSettings())
+    (found,) = SinumerikDialect().read(text, (FLAT_16,), [S1])[0].sections
+    assert found.path.position == approx(path.position, abs=1e-9)
+
+
 def test_a_tool_may_be_called_by_its_name():
     assert [
         s.tool.number

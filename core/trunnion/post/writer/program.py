@@ -8,6 +8,7 @@ from dataclasses import replace
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.model.motion.program import Program, ProgramSection
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode
 from trunnion.post.header import Header, work_position_lines
 from trunnion.post.iso_words import IsoWords, code_of
@@ -19,6 +20,7 @@ from trunnion.post.writer.approach import approach, coolant, tool_change
 from trunnion.post.writer.cycle_calls import CycleCallWriter
 from trunnion.post.writer.cycles import CycleWriter
 from trunnion.post.writer.feed import FeedFormat, dwell_text, feed_word, surface_text
+from trunnion.post.writer.helix import block_of, last_of_helix
 from trunnion.post.writer.modal import WrittenState, degrees_of
 from trunnion.post.writer.plane import MILLING, TURNING
 from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
@@ -194,7 +196,15 @@ class ProgramWriter:
                 after = begins[row].last + 1
                 continue
             yield from map(numbered, cycles.ended())
-            yield numbered(words_of(block, turned, time))
+            if self.words.whole_turns and block[2] >= Motion.ARC_CW and time == 0.0:
+                last = last_of_helix(path, row)
+                turns = f" {self.words.whole_turns}{last - row}" if last > row else ""
+                yield numbered(
+                    words_of(block_of(path, last) if turns else block, turned, time) + turns
+                )
+                after, dwell = last + 1, float(path.dwell[last])
+            else:
+                yield numbered(words_of(block, turned, time))
             if dwell > 0.0:
                 yield from map(numbered, self.waited(dwell, section))
         yield from map(numbered, cycles.ended())

@@ -88,9 +88,9 @@ class SinumerikMover(ToolMover):
 
     def target(self, block: Block, motion: Motion, tool: AnyTool) -> Point | None:
         """Return the end of a move; raise `BadInput` where it is not known which way the tool points."""
-        if isinstance(self.rotary, Directions) and self.at is not None:
-            if not self.rotary.turns(block.words):
-                self.rotary.refuse_lost(block.line)
+        is_known = self.at is not None
+        if isinstance(self.rotary, Directions) and is_known and not self.rotary.turns(block.words):
+            self.rotary.refuse_lost(block.line)
         point = super().target(block, motion, tool)
         if motion >= Motion.ARC_CW and point is not None and self.at is not None:
             upright = (0.0, 0.0, 1.0)
