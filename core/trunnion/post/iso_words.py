@@ -63,7 +63,8 @@ class IsoWords:
     and `return_levels` those that end them at the level where they began and at the retract plane; `cycle_calls` are lines that say a cycle
     for the positions after them, up to `cycle_end`. With `directions`, words of the three numbers of a tool axis, the control follows the
     tip by itself between `tip_control` and `no_tip_control`; `plane` tilts the plane of the program, by `plane_order`, and `no_plane` takes
-    that back. `whole_turns` is the word of a helix for turns beside its last. `turning` chooses the plane ZX with X
+    that back. `closing` are lines without number at the end; `point` ends whole numbers; `dwell_parts` are counted a second;
+    cycles of the kinds `fed_to_plane` go out at the feed to the retract plane alone. `whole_turns` is the word of a helix for turns beside its last. `turning` chooses the plane ZX with X
     as a diameter, without it the control does not turn work; `milling` is said in the other sections of a program that does.
     """
 
@@ -100,6 +101,10 @@ class IsoWords:
     turning: str = ""
     milling: str = ""
     whole_turns: str = ""
+    closing: tuple[str, ...] = ()
+    point: str = ""
+    dwell_parts: int = 1
+    fed_to_plane: tuple[str, ...] = ()
     return_levels: tuple[str, str] = ("", "")
     cycles: dict[str, str] = field(default_factory=dict)
     cycle_calls: dict[str, str] = field(default_factory=dict)

@@ -73,15 +73,16 @@ def angle_at(work_position: WorkPosition, axis: Floats) -> Floats:
 class TiltedSections(Sections):
     """Sections whose points are given in the plane in force: x, y, z there and the tool's direction.
 
-    `matrix` (3, 3) has the plane's axes in the setup frame as columns; `known` says that the rotary axes stand as the plane wants it;
-    `follows` that the control follows the tip, in the setup frame itself. `axis` (3,) is the tool's direction in the setup frame, None
-    while it is not known.
+    `matrix` (3, 3) has the plane's axes in the setup frame as columns, `level` says that it is the setup's own, `known` that the rotary axes
+    stand as the plane wants it; `follows` that the control follows the tip, in the setup's own plane. `axis` (3,) is the tool's direction
+    in the setup frame, None while it is not known.
     """
 
     def __init__(self, poses: TipPoses) -> None:
         super().__init__(poses)
         self.matrix = np.eye(3)
         self.known = self.follows = False
+        self.level = True
         self.axis: Floats | None = None
         self._local: Point | None = None
 
@@ -98,6 +99,7 @@ class TiltedSections(Sections):
     def tilt(self, matrix: Floats, known: bool) -> None:
         """Put another plane into force, the tool standing along its z when it is known to."""
         self.matrix, self.known, self._local = matrix, known, None
+        self.level = bool((matrix == np.eye(3)).all())
         if known:
             self.axis = matrix[:, 2]
 
@@ -123,7 +125,7 @@ class TiltedSections(Sections):
         cutting: CuttingState,
     ) -> None:
         """Add a feed move, its point and centre in the plane."""
-        middle = tuple((self.matrix @ np.array(centre[:3])).tolist())
+        middle = centre if self.level else tuple((self.matrix @ np.array(centre[:3])).tolist())
         super().feed(line, motion, self._in_setup(point), middle, pace, tool, cutting)
         self._reached(point)
 
@@ -141,6 +143,8 @@ class TiltedSections(Sections):
         self._local = None
 
     def _in_setup(self, point: Point) -> Point:
+        if self.level:
+            return point
         both = self.matrix @ np.array([point[:3], point[3:]]).T
         return (*both[:, 0].tolist(), *both[:, 1].tolist())
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.model.motion.cycle import BACK_OFF, CycleKind
+from trunnion.model.motion.cycle import BACK_OFF
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode
 from trunnion.post.ticks import WrittenCycle, WrittenPath
@@ -28,7 +28,7 @@ class CycleCallWriter:
         height = int(path.point[block.first - 1, 2])
         if template is None or modal.feeds.mode is FeedMode.INVERSE or height < block.retract:
             return []
-        if kind is CycleKind.BORE and block.end != block.retract:
+        if kind in self.words.fed_to_plane and block.end != block.retract:
             return []
         x, y, _ = path.point[block.last].tolist()
         feed = modal.feed_text(feed_of(path, block), x)
@@ -60,7 +60,7 @@ class CycleCallWriter:
             "first": scale.text(block.retract - peck),
             "peck": scale.text(peck),
             "back_off": scale.text(int(scale.ticks(np.array(BACK_OFF)))),
-            "dwell": dwell_text(cycle.dwell) if cycle.dwell else "0",
+            "dwell": dwell_text(cycle.dwell, self.words.dwell_parts) if cycle.dwell else "0",
             "feed": feed,
             "pitch": trimmed(cycle.pitch / scale.unit, PITCH_DECIMALS),
             "spindle": trimmed(modal.feeds.spindle, 0),

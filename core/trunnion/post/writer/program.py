@@ -95,6 +95,7 @@ class ProgramWriter:
             yield from self.section(section)
         yield from map(self.numbered, self.left())
         yield from (self.numbered(line) for line in words.end)
+        yield from words.closing
 
     def header(self, header: Header) -> Iterator[str]:
         """Yield the lines of the header in words, the stamp first."""
@@ -218,7 +219,7 @@ class ProgramWriter:
             raise Refused(
                 f"operation {section.operation}: {self.words.title} has no words for a dwell"
             )
-        yield f"{code} {letter}{dwell_text(seconds)}"
+        yield f"{code} {letter}{dwell_text(seconds, self.words.dwell_parts)}"
 
 
 def _range(codes: tuple[str, ...]) -> str:

@@ -20,7 +20,7 @@ from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode
 from trunnion.model.tool import AnyTool
 from trunnion.post.header import work_position_lines
-from trunnion.post.iso_words import IsoWords
+from trunnion.post.iso_words import IsoWords, code_of
 from trunnion.post.linearize import MARGIN, lines_for_arcs
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale, WrittenPath, written
@@ -41,7 +41,10 @@ class TipState(WrittenState):
     def __init__(self, words: IsoWords, settings: PostSettings) -> None:
         super().__init__(words, settings, "")
         self.vectors = TickScale(
-            unit=1.0, decimals=words.direction_decimals, feed_decimals=words.feed_decimals
+            unit=1.0,
+            decimals=words.direction_decimals,
+            feed_decimals=words.feed_decimals,
+            point=words.point,
         )
 
     def turned(self, angle: list[int]) -> list[str]:
@@ -111,7 +114,8 @@ class TipWriter(ProgramWriter):
         if not changed and not goes_on:
             yield from map(numbered, [*self.left(), words.top])
             modal.at = None
-        yield numbered(words.tool_length.format(tool=section.tool.number))
+        if not self.joined_length(section.tool):
+            yield numbered(words.tool_length.format(tool=section.tool.number))
         a, b, c = (degrees.text(v) for v in plane.ticks)
         side = "1" if self.first_lean(angle) > 0.0 else "-1"
         yield from (numbered(line.format(a=a, b=b, c=c, side=side)) for line in words.plane)
@@ -138,7 +142,8 @@ class TipWriter(ProgramWriter):
         elif not changed:
             yield from map(numbered, [*self.left(), words.top])
             modal.at = None
-        yield numbered(words.tool_length.format(tool=section.tool.number))
+        if not self.joined_length(section.tool):
+            yield numbered(words.tool_length.format(tool=section.tool.number))
         if not goes_on:
             yield numbered(f"{words.motions[Motion.RAPID]}{self.turn_words(angle)}")
         yield from (numbered(line.format(tool=section.tool.number)) for line in words.tip_control)
@@ -176,20 +181,27 @@ class TipWriter(ProgramWriter):
     ) -> Iterator[str]:
         """Yield the rapids to the first point of a section, over a point high above it where the tool comes from the top and leans."""
         modal = self.modal
+        length = "" if self.follows else self.joined_length(tool)
         first, angle = path.point[0].tolist(), path.more[0].tolist()
         if self.tilted is not None and self.tilted.upright and not goes_on:
             across = f"X{modal.scale.text(first[0])} Y{modal.scale.text(first[1])}"
             rapid = self.words.motions[Motion.RAPID]
-            yield from (f"{rapid} {across}", f"{rapid} Z{modal.scale.text(first[2])}")
+            yield from (f"{rapid} {across}", f"{rapid} {length}Z{modal.scale.text(first[2])}")
             modal.reached(first, angle, Motion.RAPID)
         else:
             points = ([] if high is None else [modal.scale.ticks(high).tolist()]) + [first]
             for point in points:
                 at = " ".join(modal.plane.words(point, modal.scale.text))
                 turn = "".join(" " + word for word in modal.turned(angle))
-                yield f"{self.words.motions[Motion.RAPID]} {at}{turn}"
+                yield f"{self.words.motions[Motion.RAPID]} {length}{at}{turn}"
+                length = ""
             modal.reached(first, angle, Motion.RAPID)
         modal.feed = ""
+
+    def joined_length(self, tool: AnyTool) -> str:
+        """Return the words that switch a tool's length on in the line of a move, empty where they stand alone."""
+        joined = code_of(self.words, "length")
+        return self.words.tool_length.format(tool=tool.number) + " " if joined else ""
 
     def keeps_direction(self, section: ProgramSection) -> bool:
         """Whether a section begins in the direction that the tool has."""

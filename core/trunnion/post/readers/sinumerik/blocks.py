@@ -127,6 +127,8 @@ def _arguments(line: int, name: str, text: str) -> tuple[str, ...]:
 
 def _upper(text: str) -> str:
     """Return a text in capitals, names between quotes as they are."""
+    if '"' not in text:
+        return text.upper()
     return "".join(
         part if part.startswith('"') else part.upper() for part in re.split(rf"({_STRING})", text)
     )
@@ -134,6 +136,8 @@ def _upper(text: str) -> str:
 
 def _without_comment(text: str) -> tuple[str, str | None]:
     """Return a line before its semicolon and what comes after it, None where there is none; one between quotes is no comment."""
+    if ";" not in text:
+        return text, None
     quoted = False
     for n, c in enumerate(text):
         quoted ^= c == '"'

@@ -10,20 +10,16 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.readers.numbers import shown
-from trunnion.post.readers.sections import Sections, UprightPoses
 from trunnion.post.readers.sinumerik.blocks import DWELL_WORD, split_sinumerik_line
-from trunnion.post.readers.sinumerik.directions import Directions
 from trunnion.post.readers.sinumerik.modes import SinumerikModes
 from trunnion.post.readers.sinumerik.moves import SinumerikMover
-from trunnion.post.readers.tilted_sections import TiltedSections, TipPoses
+from trunnion.post.readers.tip_modes import TipControl
 from trunnion.post.readers.word_address.blocks import Block
-from trunnion.post.readers.word_address.interpreter import Control
-from trunnion.post.readers.word_address.rotary import Rotary
 from trunnion.post.words import plain
 from trunnion.shop.kinematics import WorkPosition
 
 
-class SinumerikControl(Control):
+class SinumerikControl(TipControl):
     """A Sinumerik: words with `=`, calls of cycles, TRAORI and CYCLE800."""
 
     modes_class = SinumerikModes
@@ -39,19 +35,6 @@ class SinumerikControl(Control):
         # F of a dwell is a word of its own here: the reader must not take it for a feed.
         letters = {**words.letters, "dwell": DWELL_WORD}
         super().__init__(replace(words, letters=letters), tools, setup, work_position)
-
-    def sections_of(self, setup: Setup) -> Sections:
-        """Return what gathers the motions: tips, on a machine with rotary axes with the tool's direction."""
-        if self.work_position is None:
-            return Sections(UprightPoses(setup.clearance))
-        return TiltedSections(TipPoses(self.work_position, setup.clearance))
-
-    def rotary_axes(self) -> Rotary:
-        """Return what keeps the tool's direction."""
-        sections = self.state.sections
-        if isinstance(sections, TiltedSections):
-            return Directions(sections, self.language.directions, self.language.inverse)
-        return Rotary("", self.language.inverse)
 
     def split(self, number: int, line: str) -> tuple[Block | None, tuple[str, ...]]:
         """Return the words of a line and its comment."""

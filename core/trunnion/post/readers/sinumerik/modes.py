@@ -12,9 +12,8 @@ from trunnion.geometry.arrays import Floats
 from trunnion.post.readers.sinumerik.blocks import CallBlock
 from trunnion.post.readers.sinumerik.calls import CallParameters
 from trunnion.post.readers.sinumerik.cycles import CycleCall, cycle_of_call
-from trunnion.post.readers.tilted_sections import SAME_DIRECTION, TiltedSections
+from trunnion.post.readers.tip_modes import TipModes
 from trunnion.post.readers.word_address.blocks import Block
-from trunnion.post.readers.word_address.modes import Modes
 
 FIRST_EDGE = 1.0
 """D of a cutting edge: the tool list has one a tool."""
@@ -28,7 +27,7 @@ AXES = {1: 0, 2: 1, 3: 2}
 """Coordinate axis of each turn of a swivel mode: two bits a turn, the first turn in the lowest."""
 
 
-class SinumerikModes(Modes):
+class SinumerikModes(TipModes):
     """Works off the codes of a Sinumerik text. `cycle` is in force for positions, `called` is to be cut where the tool is."""
 
     own = {
@@ -55,52 +54,26 @@ class SinumerikModes(Modes):
         self.state.length_on = True
 
     def follow_tip(self, block: Block) -> None:
-        """Follow the tip from here on: points are tips in the work, directions are vectors."""
-        sections = self.tilted(block, "TRAORI")
+        """Follow the tip from here on (TRAORI)."""
         if isinstance(block, CallBlock) and block.arguments not in ((), ("1",)):
             raise BadInput(
                 f"line {block.line}: of TRAORI only the first transformation is understood; write TRAORI"
             )
-        if not self.is_level(sections):
-            raise BadInput(
-                f"line {block.line}: TRAORI in a tilted plane is not understood; put CYCLE800() first"
-            )
-        axis = sections.axis
-        sections.tilt(np.eye(3), False)
-        sections.axis, sections.follows = axis, True
-
-    def leave_tip(self, block: Block) -> None:
-        """Follow the tip no longer; where the rotary axes stand is not in the text."""
-        sections = self.state.sections
-        if isinstance(sections, TiltedSections) and sections.follows:
-            sections.follows = False
+        self.follow(block, "TRAORI")
 
     def tilt_plane(self, block: Block) -> None:
-        """Tilt the plane of the program and the tool with it, or take that back."""
-        sections = self.tilted(block, "CYCLE800")
+        """Tilt the plane of the program and the tool with it, or take that back (CYCLE800)."""
         if not isinstance(block, CallBlock):
             raise BadInput(
                 f"line {block.line}: CYCLE800 without its parameters; write CYCLE800() to end it"
             )
-        if sections.follows:
-            raise BadInput(
-                f"line {block.line}: CYCLE800 under TRAORI is not understood; put TRAFOOF first"
-            )
+        self.refuse_following(block, "CYCLE800")
         if not block.arguments:
-            axis, level = sections.axis, self.is_level(sections)
-            sections.tilt(np.eye(3), sections.known and level)
-            sections.axis = axis
+            self.level(block, "CYCLE800")
             return
         if not self.state.length_on:
             raise BadInput(f"line {block.line}: CYCLE800 without the tool's length; put D1 first")
-        matrix = plane_of(CallParameters(block))
-        axis = sections.axis if sections.known else None
-        keeps = axis is not None and np.linalg.norm(matrix[:, 2] - axis) <= SAME_DIRECTION
-        if sections.at is not None and not keeps:
-            raise BadInput(
-                f"line {block.line}: CYCLE800 turns the tool while it is at the work; put SUPA G0 Z0 D0 first"
-            )
-        sections.tilt(matrix, True)
+        self.tilt(block, "CYCLE800", plane_of(CallParameters(block)))
 
     def check_smoothing(self, block: Block) -> None:
         """Check how far CYCLE832 lets the control leave the path."""
@@ -137,18 +110,6 @@ class SinumerikModes(Modes):
             self.cycle = cycle
         else:
             self.called = cycle
-
-    def tilted(self, block: Block, code: str) -> TiltedSections:
-        """Return the sections of a machine with rotary axes; raise `BadInput` for a machine without."""
-        if not isinstance(self.state.sections, TiltedSections):
-            raise BadInput(
-                f"line {block.line}: {code} on {self.state.setup.machine}, a machine without rotary axes; remove it"
-            )
-        return self.state.sections
-
-    def is_level(self, sections: TiltedSections) -> bool:
-        """Whether the plane of the program is that of the setup."""
-        return bool((sections.matrix == np.eye(3)).all())
 
 
 def plane_of(given: CallParameters) -> Floats:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from trunnion.findings import BadInput
-from trunnion.model.motion.cycle import expanded
+from trunnion.model.motion.cycle import Cycle, Expansion, expanded
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode, per_minute
 from trunnion.model.tool import AnyTool
@@ -121,7 +121,7 @@ class ToolMover:
         over = path_over(mode, start, top, cycle)
         for end in over:
             state.sections.rapid(line, (*end, *start[3:]), tool, state.cutting())
-        plain = expanded(cycle, np.array((over or [start])[-1][:3]), np.array(top), UP)
+        plain = self.expansion(cycle, (over or [start])[-1], top)
         pace = self.pace(block, (*top, *start[3:]))
         for end, rapid, dwell in zip(
             plain.position.tolist(), plain.rapid, plain.dwell, strict=True
@@ -133,6 +133,10 @@ class ToolMover:
                 state.sections.feed(line, Motion.LINE, point, NOWHERE, pace, tool, state.cutting())
             if dwell > 0.0:
                 state.sections.dwell(dwell)
+
+    def expansion(self, cycle: Cycle, start: Point, top: Point) -> Expansion:
+        """Return the moves of a cycle from a start, on a hole whose axis meets the retract plane at `top`."""
+        return expanded(cycle, np.array(start[:3]), np.array(top), UP)
 
     def pace(self, block: Block, end: Point) -> Pace:
         """Return how fast a block is fed that ends at a point."""

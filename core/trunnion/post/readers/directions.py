@@ -1,4 +1,4 @@
-"""The tool's direction while a Sinumerik text is read: vectors under TRAORI, else along z of the plane in force."""
+"""The tool's direction while a text is read whose control follows the tip: vectors then, else along z of the plane in force."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from trunnion.model.spindle import FeedMode
 from trunnion.post.readers.sections import Pace, Point
 from trunnion.post.readers.tilted_sections import TiltedSections
 from trunnion.post.readers.word_address.blocks import Block
+from trunnion.post.readers.word_address.language import ControlLanguage
 from trunnion.post.readers.word_address.rotary import Rotary
 from trunnion.post.readers.word_address.state import ModalState
 
@@ -21,11 +22,15 @@ _UPRIGHT = [0.0, 0.0, 1.0]
 
 
 class Directions(Rotary):
-    """Unit vectors in place of angles, by the words of `words`."""
+    """Unit vectors in place of angles; `begins` is the code by which the control follows the tip, `tilts` that of a plane."""
 
-    def __init__(self, sections: TiltedSections, words: tuple[str, ...], inverse: str) -> None:
-        super().__init__("", inverse)
-        self.sections, self.words = sections, words
+    def __init__(self, sections: TiltedSections, language: ControlLanguage) -> None:
+        super().__init__("", language.inverse)
+        self.sections, self.words = sections, language.directions
+        self.begins, self.tilts = (
+            next((code for code, m in language.meanings.items() if m == meaning), "")
+            for meaning in ("tip control", "plane")
+        )
 
     def turns(self, words: Mapping[str, float]) -> bool:
         """Return whether a line has a word of a direction."""
@@ -48,7 +53,9 @@ class Directions(Rotary):
             return
         listed = " ".join(self.words)
         if not self.sections.follows:
-            raise BadInput(f"line {block.line}: {listed} without TRAORI; put TRAORI first")
+            raise BadInput(
+                f"line {block.line}: {listed} without {self.begins}; put {self.begins} first"
+            )
         if math.hypot(*(block.words.get(word, 0.0) for word in self.words)) < LEAST_VECTOR:
             raise BadInput(
                 f"line {block.line}: {listed} is no direction; give a vector of length 1"
@@ -68,7 +75,7 @@ class Directions(Rotary):
             )
         if not sections.follows and not sections.known:
             raise BadInput(
-                f"line {line}: it is not known where the rotary axes stand; put CYCLE800 with the plane, or TRAORI, first"
+                f"line {line}: it is not known where the rotary axes stand; put {self.tilts} with the plane, or {self.begins}, first"
             )
 
     def pace(self, block: Block, state: ModalState, end: Point) -> Pace:
