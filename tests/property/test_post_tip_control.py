@@ -19,7 +19,7 @@ from trunnion.shop import load_shop
 from trunnion.shop.kinematics import axes_of, rotary_solutions
 
 MACHINES = [m for m in load_shop().machines.values() if m.rotary]
-DIALECTS = ["sinumerik"]
+DIALECTS = ["sinumerik", "fanuc"]
 TIP, AXIS = 1e-3, math.radians(1e-3)
 """mm and rad that a pose may be off, beside what decimals round: 1 um and a thousandth of a degree."""
 ROUNDED = 0.5e-4 * math.sqrt(3.0)

@@ -55,17 +55,19 @@ _KEYS = {"units": ("mm", "inch"), "coolant": ("off",), "letters": ("radius",)}
 class IsoWords:
     """The words of `dialects/NAME.toml`.
 
-    `opening` are lines without number below the header; `start`, `restart`, `tool_change`, `tool_length`, `spindle`, `top` (straight up to
-    the top of the machine) and `end` are lines with what stands in braces filled in. `codes` and `refused` have one or several codes as
-    keys: what the control does at them (`readers.language.MEANINGS` and the dialect's own), and why the reader refuses them. Without
-    `inverse_time` the control has no rotary axes, without `per_revolution` no feeds by the revolution, without `surface_speed` no constant
-    surface speed; `spindle_speed` is `spindle` where one may have been in force. `cycles` are the codes of drilling cycles by their kind,
-    and `return_levels` those that end them at the level where they began and at the retract plane; `cycle_calls` are lines that say a cycle
-    for the positions after them, up to `cycle_end`. With `directions`, words of the three numbers of a tool axis, the control follows the
-    tip by itself between `tip_control` and `no_tip_control`; `plane` tilts the plane of the program, by `plane_order`, and `no_plane` takes
-    that back. `closing` are lines without number at the end; `point` ends whole numbers; `dwell_parts` are counted a second;
-    cycles of the kinds `fed_to_plane` go out at the feed to the retract plane alone. `whole_turns` is the word of a helix for turns beside its last. `turning` chooses the plane ZX with X
-    as a diameter, without it the control does not turn work; `milling` is said in the other sections of a program that does.
+    `opening` are lines without number below the header; `start`, `restart`, `tool_change`, `tool_length`, `spindle`, `top` (straight up
+    to the top of the machine) and `end` are lines with what stands in braces filled in. `codes` and `refused` have one or several codes
+    as keys: what the control does at them (`readers.language.MEANINGS` and the dialect's own), and why the reader refuses them. Without
+    `inverse_time` the control has no rotary axes, without `per_revolution` no feeds by the revolution, without `surface_speed` no
+    constant surface speed; `spindle_speed` is `spindle` where one may have been in force. `cycles` are the codes of drilling cycles by
+    their kind, and `return_levels` those that end them at the level where they began and at the retract plane; `cycle_calls` are lines
+    that say a cycle for the positions after them, up to `cycle_end`. With `directions`, words of the three numbers of a tool axis, the
+    control follows the tip by itself between `tip_control` and `no_tip_control`; `plane` tilts the plane of the program, by
+    `plane_order`, and `no_plane` takes that back. `closing` are lines without number at the end; `point` ends whole numbers;
+    `dwell_parts` are counted a second; cycles of the kinds `fed_to_plane` go out at the feed to the retract plane alone; `rises_first`
+    1: a cycle begun below its plane rises to it before it goes across. `whole_turns` is the word of a helix for turns beside its last.
+    `turning` chooses the plane ZX with X as a diameter, without it the control does not turn work; `milling` is said in the other
+    sections of a program that does.
     """
 
     title: str
@@ -105,6 +107,7 @@ class IsoWords:
     point: str = ""
     dwell_parts: int = 1
     fed_to_plane: tuple[str, ...] = ()
+    rises_first: int = 0
     return_levels: tuple[str, str] = ("", "")
     cycles: dict[str, str] = field(default_factory=dict)
     cycle_calls: dict[str, str] = field(default_factory=dict)

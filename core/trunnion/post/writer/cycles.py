@@ -60,6 +60,8 @@ class CycleWriter:
         A control that is below the level where a series began, and not above the retract plane, goes to the next hole and up at once; one
         whose series began below the retract plane goes down to that before it goes to the hole. Both are left to the motions themselves.
         """
+        if height < block.retract and not self.words.rises_first:
+            return None
         begun = CycleSeries(kind=block.cycle.kind, deep=self.deep(block), level=height)
         known, plane = self.series, block.retract
         if known is not None and (known.kind, known.deep) == (begun.kind, begun.deep):

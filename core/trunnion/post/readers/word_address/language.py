@@ -108,6 +108,8 @@ class ControlLanguage:
             if name in role and (
                 codes := tuple(code for code, m in self.meanings.items() if m == meaning)
             ):
+                if name == "length":
+                    codes += tuple(c for c, m in self.meanings.items() if m == "tip control")
                 self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
         for name, kinds in (("peck", PECKING), ("dwell", WAITING)):
             if codes := tuple(code for code, kind in self.cycles.items() if kind in kinds):
