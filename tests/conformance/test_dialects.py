@@ -96,6 +96,19 @@ def holes(kind: CycleKind, lift: float) -> Toolpath:
     return lifted(drilled(np.array([0.0, 0.0, 50.0]), tops, cycle(kind, lift=lift), 480.0))
 
 
+def is_the_controls_own(kind: CycleKind, lift: float, read: Toolpath, planned: Toolpath) -> bool:
+    """Say whether a control cuts a hole a little other than planned, along the same line: it may feed where chips are broken instead of
+    going in rapid, and leave a thread's last stroke out at the retract plane."""
+    if len(read) == len(planned) and (read.motion == planned.motion).all():
+        return False
+    assert kind is CycleKind.CHIP_BREAK or (kind is CycleKind.TAP and lift > 0.0)
+    assert max(farthest(track(read), track(planned)), farthest(track(planned), track(read))) <= 1e-3
+    if kind is CycleKind.CHIP_BREAK:
+        changed = read.motion != planned.motion
+        assert (read.motion[changed] == Motion.LINE).all()
+    return True
+
+
 def opened(path: Toolpath) -> np.ndarray:
     """Return the points (n, 3) of a path with its arcs as lines within 1 um."""
     arcs = np.flatnonzero(path.motion >= Motion.ARC_CW)
@@ -262,11 +275,15 @@ def test_a_cycle_is_written_so_that_its_motions_are_read_or_refused(dialect, kin
         assert "has no words for a dwell" in str(refused) and kind in WAITING
         return
     planned = program.sections[0].path
+    feeds = read.path.feed[read.path.motion != Motion.RAPID]
+    assert feeds == pytest.approx(np.full(len(feeds), 480.0), abs=0.13)
+    assert read.dwell == pytest.approx(planned.dwells().sum())
+    if is_the_controls_own(kind, lift, read.path, planned):
+        return
     assert np.abs(read.path.position - planned.position).max() <= 1e-3
     assert read.path.feed == pytest.approx(planned.feed, abs=0.13)
     assert list(read.path.motion) == list(planned.motion)
     assert read.path.dwells() == pytest.approx(planned.dwells())
-    assert read.dwell == pytest.approx(planned.dwells().sum())
 
 
 @by_name

@@ -17,6 +17,7 @@ from trunnion.post.header import Header
 from trunnion.post.iso_words import iso_words
 from trunnion.post.settings import PostSettings
 from trunnion.post.writer.program import ProgramWriter, comment
+from trunnion.post.writer.tip_control import TipWriter
 from trunnion.shop.kinematics import NO_WORK_POSITIONS, WorkPositions
 
 if TYPE_CHECKING:
@@ -45,9 +46,10 @@ class IsoDialect:
     ) -> str:
         """Return the text of one setup's program."""
         self._check_one(programs)
-        writer = ProgramWriter(
-            self.words, programs[0], settings, work_positions.get(programs[0].setup.name)
-        )
+        work_position = work_positions.get(programs[0].setup.name)
+        follows = self.words.directions and work_position and work_position.machine.rotary
+        writer_class = TipWriter if follows else ProgramWriter
+        writer = writer_class(self.words, programs[0], settings, work_position)
         return "\n".join(writer.lines(header)) + "\n"
 
     def stamp(self, program: str, header: Header) -> tuple[str, ...]:

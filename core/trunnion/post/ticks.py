@@ -18,14 +18,20 @@ from trunnion.units import MM_PER_INCH
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TickScale:
-    """How lengths in mm become written numbers: `unit` mm of one written unit, `decimals` of a length, `feed_decimals` of a feed."""
+    """How lengths in mm become written numbers: `unit` mm of one written unit, `decimals` of a length, `feed_decimals` of a feed.
+
+    `point` is what a whole number ends with, for controls that count one without in their least increment.
+    """
 
     unit: float
     decimals: int
     feed_decimals: int
+    point: str = ""
 
     @classmethod
-    def of(cls, settings: PostSettings, extra_inch: int, feed_decimals: int) -> TickScale:
+    def of(
+        cls, settings: PostSettings, extra_inch: int, feed_decimals: int, point: str = ""
+    ) -> TickScale:
         """Return the scale that the settings ask for."""
         inch = settings.units == "inch"
         extra = extra_inch if inch else 0
@@ -33,6 +39,7 @@ class TickScale:
             unit=MM_PER_INCH if inch else 1.0,
             decimals=settings.decimals + extra,
             feed_decimals=feed_decimals + extra,
+            point=point,
         )
 
     def ticks(self, lengths: Floats) -> Ints:
@@ -47,11 +54,17 @@ class TickScale:
         """
         whole, rest = divmod(abs(ticks), 10**self.decimals)
         sign = "-" if ticks < 0 else ""
-        return f"{sign}{whole}.{rest:0{self.decimals}d}".rstrip("0") if rest else f"{sign}{whole}"
+        if not rest:
+            return f"{sign}{whole}{self.point}"
+        return f"{sign}{whole}.{rest:0{self.decimals}d}".rstrip("0")
 
     def feed(self, feed: float) -> str:
         """Return a feed in mm/min as it is written; never zero."""
-        return shortened(feed / self.unit, self.feed_decimals)
+        return self.pointed(shortened(feed / self.unit, self.feed_decimals))
+
+    def pointed(self, text: str) -> str:
+        """Return a written number, with the point that a whole one needs."""
+        return text if "." in text else text + self.point
 
 
 def shortened(value: float, decimals: int) -> str:

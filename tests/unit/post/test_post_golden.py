@@ -12,16 +12,18 @@ from pathlib import Path
 
 import pytest
 
+from leaning_paths import TABLE, standing
 from programs import BULL_10, FLAT_16, S1, S2, program_from
 from trunnion import registry
 from trunnion.findings import BadInput
 from trunnion.model.motion.listing import listing
 from trunnion.post.header import Header
 from trunnion.post.settings import PostSettings
+from trunnion.shop.kinematics import NO_WORK_POSITIONS
 
 GOLDEN = Path(__file__).resolve().parents[2] / "golden"
 CASES = sorted((GOLDEN / "post").iterdir())
-REFUSED = sorted((GOLDEN / "refused").glob("*.[nc][cl]"))
+REFUSED = sorted(f for f in (GOLDEN / "refused").iterdir())
 HEADER = Header(
     name="B1",
     part="B1",
@@ -30,7 +32,9 @@ HEADER = Header(
     material="al-7075",
     date="2026-01-02",
 )
-DIALECTS = {".nc": "linuxcnc", ".cl": "apt"}
+DIALECTS = {".nc": "linuxcnc", ".cl": "apt", ".MPF": "sinumerik"}
+TABLES = {"S1": standing(TABLE)}
+"""Where work stands in cases of five axes."""
 
 
 def made(case: Path, expected: Path) -> str:
@@ -38,9 +42,10 @@ def made(case: Path, expected: Path) -> str:
     if sources[0].suffix != ".motions":
         dialect = registry.get("dialects", DIALECTS[sources[0].suffix])()
         setups = [S1, S2] if sources[0].suffix == ".cl" else [S1]
+        places = TABLES if "five-axis" in case.name else NO_WORK_POSITIONS
         return "".join(
             listing(p, marks=False)
-            for p in dialect.read(sources[0].read_text(), (FLAT_16, BULL_10), setups)
+            for p in dialect.read(sources[0].read_text(), (FLAT_16, BULL_10), setups, places)
         )
     settings = PostSettings(units="inch" if "inch" in case.name else "mm")
     programs = [program_from(source.read_text()) for source in sources]
@@ -62,5 +67,6 @@ def test_a_text_is_refused_with_the_message_of_its_first_line(text):
     dialect = registry.get("dialects", DIALECTS[text.suffix])()
     message = text.read_text().split("\n", 1)[0].lstrip(";$ ")
     with pytest.raises(BadInput) as refused:
-        dialect.read(text.read_text(), (FLAT_16, BULL_10), [S1])
+        places = TABLES if "five-axis" in text.name else NO_WORK_POSITIONS
+        dialect.read(text.read_text(), (FLAT_16, BULL_10), [S1], places)
     assert str(refused.value) == message

@@ -56,7 +56,7 @@ def test_a_word_that_has_a_default_may_be_missing():
         ({"letters": {"length": "H"}}, "dialect x: letters needs an entry radius"),
         (
             {"letters": {"radius": "CR"}},
-            "dialect x: letters must be one letter each for some of radius, .*; got radius = 'CR'",
+            "dialect x: letters must be one letter each, or a word with =, for some of radius, .*; got radius = 'CR'",
         ),
         (
             {"letters": {"radius": "R", "colour": "Q"}},

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from trunnion import registry
 from trunnion.cli.common import (
     add_output,
     check_output,
@@ -22,7 +23,8 @@ def add(commands: Any) -> None:
     made = part_command(
         commands,
         "post",
-        "write the NC text of a project (choose the dialect with --set post.dialect=NAME)",
+        "write the NC text of a project (choose the dialect with --set post.dialect=NAME: "
+        f"{', '.join(registry.names('dialects'))})",
     )
     add_output(made)
     made.add_argument(

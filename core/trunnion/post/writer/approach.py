@@ -10,12 +10,17 @@ from collections.abc import Iterator
 
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.tool import AnyTool
+from trunnion.post.words import plain
 from trunnion.post.writer.modal import WrittenState
+
+LONGEST_NAME = 32
+"""Characters of a tool's name that tool tables hold."""
 
 
 def tool_change(modal: WrittenState, tool: AnyTool) -> Iterator[str]:
     """Yield the lines that bring a tool into the spindle; where it is is not known after them."""
-    yield from (line.format(tool=tool.number) for line in modal.words.tool_change)
+    filled = {"tool": tool.number, "name": plain(tool.name, LONGEST_NAME)}
+    yield from (line.format(**filled) for line in modal.words.tool_change)
     modal.tool, modal.at, modal.coolant = tool.number, None, "off"
 
 

@@ -43,6 +43,8 @@ class CycleWriter:
         if kind not in self.words.cycles or modal.feeds.mode is FeedMode.INVERSE:
             return []
         height = path.point[block.first - 1].tolist()[2]
+        if kind in self.words.fed_to_plane and block.end != block.retract:
+            return []
         series, before = self.series_of(block, height), self.series
         if series is None:
             return []
@@ -58,6 +60,8 @@ class CycleWriter:
         A control that is below the level where a series began, and not above the retract plane, goes to the next hole and up at once; one
         whose series began below the retract plane goes down to that before it goes to the hole. Both are left to the motions themselves.
         """
+        if height < block.retract and not self.words.rises_first:
+            return None
         begun = CycleSeries(kind=block.cycle.kind, deep=self.deep(block), level=height)
         known, plane = self.series, block.retract
         if known is not None and (known.kind, known.deep) == (begun.kind, begun.deep):
@@ -72,7 +76,8 @@ class CycleWriter:
         peck = scale.text(int(scale.ticks(np.array(cycle.peck))))
         found = [letters["peck"] + peck] if cycle.peck > 0.0 else []
         if cycle.kind is CycleKind.DWELL or cycle.kind is CycleKind.BORE:
-            found.append(letters["dwell"] + (dwell_text(cycle.dwell) if cycle.dwell else "0"))
+            dwell = dwell_text(cycle.dwell, self.words.dwell_parts) if cycle.dwell else "0"
+            found.append(letters["dwell"] + dwell)
         return tuple(found)
 
     def line(self, path: WrittenPath, block: WrittenCycle, series: CycleSeries) -> str:

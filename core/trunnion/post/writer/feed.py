@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -50,9 +51,14 @@ def feed_word(words: IsoWords, mode: FeedMode) -> str:
     }[mode]
 
 
-def dwell_text(seconds: float) -> str:
-    """Return a dwell as it is written; never zero."""
-    return shortened(seconds, DWELL_DECIMALS)
+def dwell_text(seconds: float, a_second: int = 1) -> str:
+    """Return a dwell as it is written, in as many parts as the control counts `a_second` in; never zero.
+
+    >>> dwell_text(0.5), dwell_text(0.5, 1000)
+    ('0.5', '500')
+    """
+    decimals = max(0, DWELL_DECIMALS - round(math.log10(a_second)))
+    return shortened(seconds * a_second, decimals)
 
 
 def revolution_text(share: float, scale: TickScale, words: RevolutionWords) -> str:

@@ -27,7 +27,9 @@ class WrittenState:
 
     def __init__(self, words: IsoWords, settings: PostSettings, letters: str) -> None:
         self.words, self.letters = words, letters
-        self.scale = TickScale.of(settings, words.extra_decimals_inch, words.feed_decimals)
+        self.scale = TickScale.of(
+            settings, words.extra_decimals_inch, words.feed_decimals, words.point
+        )
         self.degrees = degrees_of(words)
         self.centre_words = CENTRES[words.centres]
         self.tool: int | None = None
@@ -68,7 +70,7 @@ class WrittenState:
             i, j = self.centre_words(centre, at[0], at[1])
             parts += [plane.centres[0] + text(i), plane.centres[1] + text(j)]
         if minutes > 0.0:
-            parts.append("F" + inverse_time(minutes))
+            parts.append("F" + self.scale.pointed(inverse_time(minutes)))
         elif fed and (feed_words := self.feed_text(feed, point[plane.radial])) != self.feed:
             parts.append("F" + feed_words)
             self.feed = feed_words
@@ -85,7 +87,9 @@ class WrittenState:
         if self.feeds.mode is not FeedMode.REVOLUTION:
             return self.scale.feed(feed)
         turns = self.feeds.turns(x * self.scale.unit / 10.0**self.scale.decimals)
-        return revolution_text(per_revolution(feed, turns), self.scale, self.words)
+        return self.scale.pointed(
+            revolution_text(per_revolution(feed, turns), self.scale, self.words)
+        )
 
     def turned(self, angle: list[int]) -> list[str]:
         """Return the words of the rotary axes that turn."""
@@ -99,4 +103,9 @@ class WrittenState:
 
 def degrees_of(words: IsoWords) -> TickScale:
     """Return how angles in degrees become written numbers."""
-    return TickScale(unit=1.0, decimals=words.angle_decimals, feed_decimals=words.feed_decimals)
+    return TickScale(
+        unit=1.0,
+        decimals=words.angle_decimals,
+        feed_decimals=words.feed_decimals,
+        point=words.point,
+    )

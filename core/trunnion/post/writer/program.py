@@ -6,23 +6,30 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from trunnion.findings import Refused
+from trunnion.geometry.arrays import Floats
 from trunnion.model.motion.program import Program, ProgramSection
+from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode
 from trunnion.post.header import Header, work_position_lines
 from trunnion.post.iso_words import IsoWords, code_of
 from trunnion.post.linearize import PathTolerance
 from trunnion.post.settings import PostSettings
-from trunnion.post.ticks import TickScale
+from trunnion.post.ticks import TickScale, WrittenPath
 from trunnion.post.words import plain, refuse_unwritable
 from trunnion.post.writer.approach import approach, coolant, tool_change
+from trunnion.post.writer.cycle_calls import CycleCallWriter
 from trunnion.post.writer.cycles import CycleWriter
 from trunnion.post.writer.feed import FeedFormat, dwell_text, feed_word, surface_text
+from trunnion.post.writer.helix import block_of, last_of_helix
 from trunnion.post.writer.modal import WrittenState, degrees_of
 from trunnion.post.writer.plane import MILLING, TURNING
 from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
 from trunnion.post.writer.turning import TurningForm
 from trunnion.shop.kinematics import WorkPosition
 from trunnion.units import trimmed
+
+_MOST_LISTED = 12
+"""Work offsets that a message lists."""
 
 
 def comment(words: IsoWords, text: str) -> str:
@@ -45,10 +52,22 @@ class ProgramWriter:
         self.work_position = (
             work_position if work_position is not None and work_position.machine.rotary else None
         )
-        self.axes = _axis_form(words, settings, self.work_position)
-        self.modal = WrittenState(words, settings, self.axes.letters)
+        self.axes = self.axis_form()
+        self.modal = self.written_state()
         self.number = 0
         self.turns = any(s.path.work_turns for s in program.sections)
+
+    def axis_form(self) -> AxisForm:
+        """Return how motions become positions that this control takes; raise `Refused` where it can't."""
+        return _axis_form(self.words, self.settings, self.work_position)
+
+    def written_state(self) -> WrittenState:
+        """Return the modal state at the beginning of the text."""
+        return WrittenState(self.words, self.settings, self.axes.letters)
+
+    def left(self) -> Iterator[str]:
+        """Yield the lines without numbers that must come before the tool leaves the work for the top of the machine."""
+        yield from ()
 
     def lines(self, header: Header) -> Iterator[str]:
         """Yield the lines of the text; raise `Refused` for what the control can't do."""
@@ -56,7 +75,7 @@ class ProgramWriter:
         if setup.work_offset not in words.work_offsets:
             raise Refused(
                 f"setup {setup.name}: {words.title} has no work offset {setup.work_offset}; "
-                f"it has {', '.join(words.work_offsets)}"
+                f"it has {_range(words.work_offsets)}"
             )
         yield from (comment(words, line) for line in self.header(header))
         yield from (
@@ -74,7 +93,9 @@ class ProgramWriter:
         yield from (self.numbered(line.format(**filled)) for line in words.start)
         for section in self.program.sections:
             yield from self.section(section)
+        yield from map(self.numbered, self.left())
         yield from (self.numbered(line) for line in words.end)
+        yield from words.closing
 
     def header(self, header: Header) -> Iterator[str]:
         """Yield the lines of the header in words, the stamp first."""
@@ -83,9 +104,11 @@ class ProgramWriter:
         if self.turns:
             yield "X IS A DIAMETER WHILE THE WORK TURNS"
         if self.work_position is not None:
-            yield from work_position_lines(
-                self.program.setup, self.work_position, self.settings.units
-            )
+            yield from self.work_position_lines(self.work_position)
+
+    def work_position_lines(self, work_position: WorkPosition) -> Iterator[str]:
+        """Yield the lines of the header that say where the work stands, and what follows for the words."""
+        yield from work_position_lines(self.program.setup, work_position, self.settings.units)
 
     def numbered(self, line: str) -> str:
         """Return a line with the next number."""
@@ -104,6 +127,7 @@ class ProgramWriter:
         )
         changes = tool.number != modal.tool
         if changes:
+            yield from map(self.numbered, self.left())
             yield from map(self.numbered, tool_change(modal, tool))
         yield self.numbered(words.restart.format(offset=self.program.setup.work_offset))
         yield from map(self.numbered, self.plane(section))
@@ -151,23 +175,37 @@ class ProgramWriter:
         modal = self.modal
         axes = TurningForm(scale=modal.scale) if section.path.work_turns else self.axes
         path, minutes = axes.blocks(section, modal.angle, not changed)
-        blocks = zip(
+        first, angle = path.point[0].tolist(), path.more[0].tolist()
+        yield from map(self.numbered, approach(modal, section.tool, first, angle, changed))
+        yield from self.blocks(section, path, minutes)
+
+    def blocks(self, section: ProgramSection, path: WrittenPath, minutes: Floats) -> Iterator[str]:
+        """Yield the blocks of a section after its first, which the tool has reached already."""
+        modal = self.modal
+        numbered, words_of = self.numbered, modal.block
+        yield from map(numbered, self.waited(float(path.dwell[0]), section))
+        writer_class = CycleCallWriter if self.words.cycle_calls else CycleWriter
+        cycles, begins, after = writer_class(modal), {c.first: c for c in path.cycles}, 0
+        rows = zip(
             path.blocks(), path.more.tolist(), minutes.tolist(), path.dwell.tolist(), strict=True
         )
-        (first, _, _, _), angle, _, dwell = next(blocks)
-        yield from map(self.numbered, approach(modal, section.tool, first, angle, changed))
-        yield from map(self.numbered, self.waited(dwell, section))
-        numbered, words_of = self.numbered, modal.block
-        cycles, begins, after = CycleWriter(modal), {c.first: c for c in path.cycles}, 0
-        for row, (block, turned, time, dwell) in enumerate(blocks, 1):
-            if row < after:
+        for row, (block, turned, time, dwell) in enumerate(rows):
+            if row < max(after, 1):
                 continue
             if row in begins and (lines := cycles.lines(path, begins[row])):
                 yield from map(numbered, lines)
                 after = begins[row].last + 1
                 continue
             yield from map(numbered, cycles.ended())
-            yield numbered(words_of(block, turned, time))
+            if self.words.whole_turns and block[2] >= Motion.ARC_CW and time == 0.0:
+                last = last_of_helix(path, row)
+                turns = f" {self.words.whole_turns}{last - row}" if last > row else ""
+                yield numbered(
+                    words_of(block_of(path, last) if turns else block, turned, time) + turns
+                )
+                after, dwell = last + 1, float(path.dwell[last])
+            else:
+                yield numbered(words_of(block, turned, time))
             if dwell > 0.0:
                 yield from map(numbered, self.waited(dwell, section))
         yield from map(numbered, cycles.ended())
@@ -181,7 +219,13 @@ class ProgramWriter:
             raise Refused(
                 f"operation {section.operation}: {self.words.title} has no words for a dwell"
             )
-        yield f"{code} {letter}{dwell_text(seconds)}"
+        yield f"{code} {letter}{dwell_text(seconds, self.words.dwell_parts)}"
+
+
+def _range(codes: tuple[str, ...]) -> str:
+    """Return codes as a message lists them: many by the first and the last ones."""
+    few = codes if len(codes) <= _MOST_LISTED else (*codes[: _MOST_LISTED - 2], "...", codes[-1])
+    return ", ".join(few)
 
 
 def _axis_form(

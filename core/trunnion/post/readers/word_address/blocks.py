@@ -59,7 +59,7 @@ def _words(line: int, packed: str) -> Block:
     for letter, number in _WORD.findall(packed):
         length += 1 + len(number)
         if letter in "GM":
-            codes.append(_code(line, letter, number))
+            codes.append(code_text(line, letter, number))
         elif letter in words:
             raise BadInput(f"line {line}: two {letter} words; keep one")
         else:
@@ -70,7 +70,12 @@ def _words(line: int, packed: str) -> Block:
     return Block(line, codes, words)
 
 
-def _code(line: int, letter: str, number: str) -> str:
+def code_text(line: int, letter: str, number: str) -> str:
+    """Return a G or M word as a text; raise `BadInput` for a number that no code has.
+
+    >>> code_text(1, "G", "01"), code_text(1, "G", "59.1")
+    ('G1', 'G59.1')
+    """
     value = round(float(number), 1)
     if value != float(number) or not 0.0 <= value < _MOST_CODE:
         raise BadInput(f"line {line}: {letter}{shown(number)} is no code of this control")

@@ -29,10 +29,12 @@ from trunnion.shop.kinematics import WorkPosition
 class Control:
     """The control of one text. What only one control does is in a class derived from this.
 
-    `modes_class` works off its codes; `brackets` says that comments stand in brackets too, beside those after a semicolon.
+    `modes_class` works off its codes, `mover_class` moves the tool; `brackets` says that comments stand in brackets too,
+    beside those after a semicolon.
     """
 
     modes_class: ClassVar[type[Modes]] = Modes
+    mover_class: ClassVar[type[ToolMover]] = ToolMover
     brackets: ClassVar[bool] = True
 
     def __init__(
@@ -49,18 +51,25 @@ class Control:
             )
         self.work_position = work_position
         self.language = ControlLanguage(words, work_position, (*MEANINGS, *self.modes_class.own))
-        sections = Sections(
-            UprightPoses(setup.clearance)
-            if work_position is None
-            else Joints(work_position, setup.clearance)
-        )
-        self.state = ModalState(tools=tools, setup=setup, sections=sections)
+        self.state = ModalState(tools=tools, setup=setup, sections=self.sections_of(setup))
         self.modes = self.modes_class(self.language, self.state)
-        self.moves = ToolMover(
-            self.language, self.state, Rotary(self.language.rotary, self.language.inverse)
-        )
+        self.moves = self.mover_class(self.language, self.state, self.rotary_axes())
         self.last_n = -1.0
         self.begun = self.ended = False
+
+    def sections_of(self, setup: Setup) -> Sections:
+        """Return what gathers the motions: words are tips, on a machine with rotary axes positions of its axes."""
+        if self.work_position is None:
+            return Sections(UprightPoses(setup.clearance))
+        return Sections(Joints(self.work_position, setup.clearance))
+
+    def rotary_axes(self) -> Rotary:
+        """Return what keeps the rotary axes while the text is read."""
+        return Rotary(self.language.rotary, self.language.inverse)
+
+    def split(self, number: int, line: str) -> tuple[Block | None, tuple[str, ...]]:
+        """Return the words of a line, None when it has none, and its comments."""
+        return split_line(number, line, self.brackets)
 
     def read(self, text: str) -> Program:
         """Return the motions of a text; raise `BadInput` naming the line of what isn't understood."""
@@ -75,7 +84,7 @@ class Control:
 
     def read_line(self, number: int, line: str) -> None:
         """Take the comments of a line, then do what its words say."""
-        block, comments = split_line(number, line, self.brackets)
+        block, comments = self.split(number, line)
         for comment in comments:
             self.remark(number, comment)
         if block is not None:

@@ -101,12 +101,15 @@ class ControlLanguage:
             role.get("length", ""),
         )
         self.arc = frozenset(("I", "J", self.radius))
-        self.moves = self.arc | set("XYZ") | set(self.rotary)
+        self.directions = self.words.directions if work_position else ()
+        self.moves = self.arc | set("XYZ") | set(self.rotary) | set(self.directions)
         self.takers: dict[str, tuple[str, ...]] = {}
         for name, meaning in _TAKEN_BY.items():
             if name in role and (
                 codes := tuple(code for code, m in self.meanings.items() if m == meaning)
             ):
+                if name == "length":
+                    codes += tuple(c for c, m in self.meanings.items() if m == "tip control")
                 self.takers[role[name]] = (*self.takers.get(role[name], ()), *codes)
         for name, kinds in (("peck", PECKING), ("dwell", WAITING)):
             if codes := tuple(code for code, kind in self.cycles.items() if kind in kinds):

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from trunnion.findings import BadInput
-from trunnion.model.motion.cycle import expanded
+from trunnion.model.motion.cycle import Cycle, Expansion, expanded
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode, per_minute
 from trunnion.model.tool import AnyTool
@@ -45,6 +45,11 @@ class ToolMover:
         self.language, self.state, self.rotary = language, state, rotary
         self.offset = OFFSETS[language.words.centres]
 
+    @property
+    def at(self) -> Point | None:
+        """Where the tool is as the text counts it; None while that is not known."""
+        return self.state.sections.at
+
     def move(self, block: Block) -> None:
         """Move as the words and the modal motion say."""
         state, line = self.state, block.line
@@ -70,8 +75,15 @@ class ToolMover:
         if motion != Motion.LINE:
             centre = self.centre(block, motion, point)
             centre = (centre[1], 0.0, centre[0]) if state.in_zx else centre
+        self.feed(block, motion, point, centre, tool)
+
+    def feed(
+        self, block: Block, motion: Motion, point: Point, centre: Point, tool: AnyTool
+    ) -> None:
+        """Add a feed move."""
+        state = self.state
         state.sections.feed(
-            line, motion, point, centre, self.pace(block, point), tool, state.cutting()
+            block.line, motion, point, centre, self.pace(block, point), tool, state.cutting()
         )
 
     def check_feed(self, line: int, tool: AnyTool) -> None:
@@ -90,7 +102,7 @@ class ToolMover:
 
     def drill(self, block: Block, mode: ModalCycle) -> None:
         """Drill a hole as the cycle in force says."""
-        state, line, start = self.state, block.line, self.state.sections.at
+        state, line, start = self.state, block.line, self.at
         tool = self.ready(line)
         if start is None or not state.length_on:
             raise BadInput(
@@ -109,7 +121,7 @@ class ToolMover:
         over = path_over(mode, start, top, cycle)
         for end in over:
             state.sections.rapid(line, (*end, *start[3:]), tool, state.cutting())
-        plain = expanded(cycle, np.array((over or [start])[-1][:3]), np.array(top), UP)
+        plain = self.expansion(cycle, (over or [start])[-1], top)
         pace = self.pace(block, (*top, *start[3:]))
         for end, rapid, dwell in zip(
             plain.position.tolist(), plain.rapid, plain.dwell, strict=True
@@ -122,6 +134,10 @@ class ToolMover:
             if dwell > 0.0:
                 state.sections.dwell(dwell)
 
+    def expansion(self, cycle: Cycle, start: Point, top: Point) -> Expansion:
+        """Return the moves of a cycle from a start, on a hole whose axis meets the retract plane at `top`."""
+        return expanded(cycle, np.array(start[:3]), np.array(top), UP)
+
     def pace(self, block: Block, end: Point) -> Pace:
         """Return how fast a block is fed that ends at a point."""
         state = self.state
@@ -133,7 +149,7 @@ class ToolMover:
 
     def by_revolution(self, block: Block, end: Point) -> Pace:
         """Return how fast a block is fed whose feed is given by the revolution; raise `BadInput` where that is no feed."""
-        state, start = self.state, self.state.sections.at
+        state, start = self.state, self.at
         turns = state.turns_at(end[0])
         if turns <= 0.0:
             raise BadInput(
@@ -212,7 +228,7 @@ class ToolMover:
             raise BadInput(
                 f"line {block.line}: {language.retract} without {listed(language.cycles)}; remove it"
             )
-        at, unit = state.sections.at, state.unit
+        at, unit = self.at, state.unit
         if at is None:
             return self.first_target(block, motion, tool)
         angle = self.rotary.turned(words)
@@ -285,7 +301,7 @@ class ToolMover:
         words, line, start, radius = (
             block.words,
             block.line,
-            self.state.sections.at,
+            self.at,
             self.language.radius,
         )
         assert start is not None
@@ -301,11 +317,15 @@ class ToolMover:
             return centre_by_radius(line, motion, start, end, words[radius] * unit, radius)
         if i is None and j is None:
             raise BadInput(f"line {line}: an arc without {self.arc_letters}")
-        if words.get(self.language.turns, 1.0) != 1.0:
-            raise BadInput(
-                f"line {line}: an arc of several turns ({self.language.turns}) is not understood; write each turn"
-            )
+        self.check_turns(block)
         offset = self.offset(
             None if i is None else i * unit, None if j is None else j * unit, start
         )
         return centre_by_offset(line, start, end, offset, radius)
+
+    def check_turns(self, block: Block) -> None:
+        """Raise `BadInput` for an arc of several turns."""
+        if block.words.get(self.language.turns, 1.0) != 1.0:
+            raise BadInput(
+                f"line {block.line}: an arc of several turns ({self.language.turns}) is not understood; write each turn"
+            )

@@ -1,0 +1,154 @@
+"""Sections of a control that follows the tip by itself: points in a tilted plane or in the work, each with the tool's direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.model.motion.toolpath import Motion, Toolpath
+from trunnion.model.tool import AnyTool
+from trunnion.post.readers.sections import (
+    CuttingState,
+    Pace,
+    Point,
+    SectionBlocks,
+    Sections,
+    path_of,
+)
+from trunnion.shop.kinematics import (
+    SLACK,
+    UP,
+    UPRIGHT,
+    WorkPosition,
+    axes_of,
+    lift_of,
+    rotary_solutions,
+)
+from trunnion.shop.rotary_angles import TURN
+
+SAME_DIRECTION = 1e-6
+"""Two directions closer than this (their difference's length) differ by what angles and vectors are written to."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TipPoses:
+    """Points are tips in the setup frame and the unit axis of the tool, on a machine that has to hold it."""
+
+    work_position: WorkPosition
+    clearance: float
+
+    def above(self, point: Point, tool: AnyTool) -> Point | None:
+        """See `PoseInterpreter`: an upright tool is lifted to the clearance height, a leaning one with the machine's Z beyond all that
+        stands on the table."""
+        tip, axis = np.array(point[:3]), np.array(point[3:])
+        if float(np.linalg.norm(axis - UP)) < UPRIGHT:
+            more, lift = self.clearance - float(tip[2]), UP
+        else:
+            lift = lift_of(self.work_position, angle_at(self.work_position, axis))
+            more = self.work_position.radius - float((tip - self.work_position.centre) @ lift)
+        if more <= tolerance.WRITTEN:
+            return None
+        return (*(tip + more * lift).tolist(), *point[3:])
+
+    def opened(self, rows: SectionBlocks) -> tuple[Toolpath, tuple[int, ...]]:
+        """See `PoseInterpreter`: between two blocks the tip goes straight and the axis turns evenly, as a toolpath means it."""
+        points = np.array(rows.point)
+        axis = points[:, 3:] / np.linalg.norm(points[:, 3:], axis=1, keepdims=True)
+        path = path_of(rows, points[:, :3], axis, np.array(rows.centre)[:, :3])
+        return path, tuple(rows.line)
+
+
+def angle_at(work_position: WorkPosition, axis: Floats) -> Floats:
+    """Return angles (a,) in rad at which a machine holds a tool axis (3,): the way that is within its limits, else the first."""
+    low, high = work_position.limits
+    both = rotary_solutions(work_position.machine, axis[None])[0][0]
+    least = low + np.mod(both - low + SLACK, TURN) - SLACK
+    within = (least <= high + SLACK).all(axis=1)
+    return np.asarray(least[int(np.argmax(within))])
+
+
+class TiltedSections(Sections):
+    """Sections whose points are given in the plane in force: x, y, z there and the tool's direction.
+
+    `matrix` (3, 3) has the plane's axes in the setup frame as columns, `level` says that it is the setup's own, `known` that the rotary
+    axes stand as the plane wants it; `follows` that the control follows the tip, in the setup's own plane. `axis` (3,) is the tool's direction
+    in the setup frame, None while it is not known.
+    """
+
+    def __init__(self, poses: TipPoses) -> None:
+        super().__init__(poses)
+        self.matrix = np.eye(3)
+        self.known = self.follows = False
+        self.level = True
+        self.axis: Floats | None = None
+        self._local: Point | None = None
+
+    @property
+    def local(self) -> Point | None:
+        """Where the tool is, in the plane in force; None while that is not known."""
+        if self.at is None:
+            return None
+        if self._local is None:
+            back = self.matrix.T @ np.array([self.at[:3], self.at[3:]]).T
+            self._local = (*back[:, 0].tolist(), *back[:, 1].tolist())
+        return self._local
+
+    def tilt(self, matrix: Floats, known: bool) -> None:
+        """Put another plane into force, the tool standing along its z when it is known to."""
+        self.matrix, self.known, self._local = matrix, known, None
+        self.level = bool((matrix == np.eye(3)).all())
+        if known:
+            self.axis = matrix[:, 2]
+
+    def turned_away(self, angle: Floats | None, work_position: WorkPosition) -> None:
+        """Let the rotary axes stand at angles (a,) rad, None while one is not known: with all at 0 the plane is the setup's own."""
+        at_zero = angle is not None and not angle.any()
+        self.tilt(np.eye(3), at_zero)
+        self.axis = None if angle is None else axes_of(work_position, angle[None])[0]
+
+    def rapid(self, line: int, point: Point, tool: AnyTool, state: CuttingState) -> None:
+        """Add a rapid to a point of the plane."""
+        super().rapid(line, self._in_setup(point), tool, state)
+        self._reached(point)
+
+    def feed(
+        self,
+        line: int,
+        motion: Motion,
+        point: Point,
+        centre: Point,
+        pace: Pace,
+        tool: AnyTool,
+        cutting: CuttingState,
+    ) -> None:
+        """Add a feed move, its point and centre in the plane."""
+        middle = centre if self.level else tuple((self.matrix @ np.array(centre[:3])).tolist())
+        super().feed(line, motion, self._in_setup(point), middle, pace, tool, cutting)
+        self._reached(point)
+
+    def lift(self, line: int, tool: AnyTool, state: CuttingState) -> None:
+        """Take the tool straight up out of sight."""
+        if self.at is not None:
+            if (up := self.interpreter.above(self.at, tool)) is not None:
+                super().rapid(line, up, tool, state)
+            self.at = None
+        self._local = None
+
+    def change_tool(self) -> None:
+        """End the section; see `Sections`."""
+        super().change_tool()
+        self._local = None
+
+    def _in_setup(self, point: Point) -> Point:
+        if self.level:
+            return point
+        both = self.matrix @ np.array([point[:3], point[3:]]).T
+        return (*both[:, 0].tolist(), *both[:, 1].tolist())
+
+    def _reached(self, point: Point) -> None:
+        self._local = point
+        if self.at is not None:
+            self.axis = np.array(self.at[3:])

@@ -1,0 +1,98 @@
+"""What codes do on a control that follows the tip and tilts its plane, whatever it calls them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.findings import BadInput
+from trunnion.geometry.arrays import Floats
+from trunnion.model.setup import Setup
+from trunnion.post.readers.directions import Directions
+from trunnion.post.readers.sections import Sections, UprightPoses
+from trunnion.post.readers.tilted_sections import SAME_DIRECTION, TiltedSections, TipPoses
+from trunnion.post.readers.tip_moves import TipMover
+from trunnion.post.readers.word_address.blocks import Block
+from trunnion.post.readers.word_address.interpreter import Control
+from trunnion.post.readers.word_address.modes import Modes
+from trunnion.post.readers.word_address.rotary import Rotary
+
+
+class TipModes(Modes):
+    """Follows the tip and tilts the plane of the program; the codes that do so are a derived class's."""
+
+    def follow(self, block: Block, code: str) -> None:
+        """Follow the tip from here on: points are tips in the work, directions are vectors."""
+        sections = self.tilted(block, code)
+        if not sections.level:
+            raise BadInput(
+                f"line {block.line}: {code} in a tilted plane is not understood; put {self.language.words.no_plane} first"
+            )
+        axis = sections.axis
+        sections.tilt(np.eye(3), False)
+        sections.axis, sections.follows = axis, True
+
+    def leave_tip(self, block: Block) -> None:
+        """Follow the tip no longer; where the rotary axes stand is not in the text."""
+        sections = self.state.sections
+        if isinstance(sections, TiltedSections):
+            sections.follows = False
+
+    def tilt(self, block: Block, code: str, matrix: Floats) -> None:
+        """Tilt the plane of the program to axes (3, 3), columns in the setup frame, and turn the tool along its z: at the top of the
+        machine, unless it points there."""
+        sections = self.tilted(block, code)
+        axis = sections.axis if sections.known else None
+        keeps = axis is not None and np.linalg.norm(matrix[:, 2] - axis) <= SAME_DIRECTION
+        if sections.at is not None and not keeps:
+            raise BadInput(
+                f"line {block.line}: {code} turns the tool while it is at the work; put {self.language.words.top} first"
+            )
+        sections.tilt(matrix, True)
+
+    def level(self, block: Block, code: str) -> None:
+        """Take the plane of the setup again; the tool points where it did."""
+        sections = self.tilted(block, code)
+        axis, level = sections.axis, sections.level
+        sections.tilt(np.eye(3), sections.known and level)
+        sections.axis = axis
+
+    def tilted(self, block: Block, code: str) -> TiltedSections:
+        """Return the sections of a machine with rotary axes; raise `BadInput` for a machine without."""
+        if not isinstance(self.state.sections, TiltedSections):
+            raise BadInput(
+                f"line {block.line}: {code} on {self.state.setup.machine}, a machine without rotary axes; remove it"
+            )
+        return self.state.sections
+
+    def refuse_following(self, block: Block, code: str) -> None:
+        """Raise `BadInput` for a plane while the control follows the tip."""
+        sections, words = self.tilted(block, code), self.language.words
+        if sections.follows:
+            begins = self.begins
+            raise BadInput(
+                f"line {block.line}: {code} under {begins} is not understood; put {words.no_tip_control} first"
+            )
+
+    @property
+    def begins(self) -> str:
+        """The code by which the control follows the tip."""
+        return next((c for c, m in self.language.meanings.items() if m == "tip control"), "")
+
+
+class TipControl(Control):
+    """A control that follows the tip on machines with rotary axes."""
+
+    mover_class = TipMover
+
+    def sections_of(self, setup: Setup) -> Sections:
+        """Return what gathers the motions: tips, on a machine with rotary axes with the tool's direction."""
+        if self.work_position is None:
+            return Sections(UprightPoses(setup.clearance))
+        return TiltedSections(TipPoses(self.work_position, setup.clearance))
+
+    def rotary_axes(self) -> Rotary:
+        """Return what keeps the tool's direction."""
+        sections = self.state.sections
+        if isinstance(sections, TiltedSections):
+            return Directions(sections, self.language)
+        return Rotary("", self.language.inverse)
