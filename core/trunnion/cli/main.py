@@ -24,6 +24,7 @@ GENERAL = (
     "planning.route",
     "planning.optimize",
     "planning.estimate",
+    "planning.optimum",
     "programs.program",
     "programs.verify",
     "programs.post",

@@ -38,6 +38,8 @@ def solve_exactly(problem: CuttingProblem, weight: float) -> Optimum | None:
     assert cheapest is not None
     least_time = float(problem.time(*quickest))
     least_cost = float(problem.cost(*cheapest))
+    if quickest == cheapest:
+        return optimum_at(problem, *quickest, least_time, least_cost, weight)
 
     def value(spindle: Floats, feed: Floats) -> Floats:
         return weighted(
@@ -62,19 +64,17 @@ def _best(problem: CuttingProblem, value: Value) -> tuple[float, float] | None:
         speeds = np.linspace(low, high, count)
         steps = np.linspace(bottom, top, FEEDS)
         spindle = np.clip(np.exp(speeds), *problem.spindle)
-        largest = problem.largest_feed(spindle)
-        kept = np.isfinite(largest)
+        kept = np.isfinite(problem.largest_feed(spindle))
         if not kept.any():
             return None
-        span = np.where(kept, largest / problem.feed[0], 1.0)
-        feed = problem.feed[0] * span[:, None] ** steps
-        feed[:, steps == 1.0] = np.where(kept, largest, problem.feed[0])[:, None]
-        found = value(np.repeat(spindle, FEEDS), feed.ravel()).reshape(feed.shape)
-        found = np.where(kept[:, None], found, np.inf)
+        grid = np.repeat(spindle, FEEDS)
+        feed = problem.feed_between(grid, np.tile(steps, count))
+        found = np.where(kept[:, None], value(grid, feed).reshape(count, FEEDS), np.inf)
         # Of equal values the first counts: the result is the same on every run.
         row, column = np.unravel_index(int(np.argmin(found)), found.shape)
         if best is None or found[row, column] < best[0]:
-            best = float(found[row, column]), float(spindle[row]), float(feed[row, column])
+            at = row * FEEDS + column
+            best = float(found[row, column]), float(grid[at]), float(feed[at])
         reach, width = KEPT * (high - low) / (count - 1), KEPT * (top - bottom) / (FEEDS - 1)
         low, high = max(speeds[row] - reach, low), min(speeds[row] + reach, high)
         bottom, top = max(steps[column] - width, 0.0), min(steps[column] + width, 1.0)

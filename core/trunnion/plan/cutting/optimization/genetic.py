@@ -1,7 +1,9 @@
 """The genetic algorithm: pymoo's GA for the weighted objective, and NSGA-II for the front of time against cost or load.
 
-pymoo (Blank and Deb, IEEE Access 8, 2020) is imported where it is used, so that nothing else waits for it. A point is the logarithms of
-spindle speed and feed per tooth; constraints are held by its rule that a feasible point beats any other. Same seed, same result.
+pymoo (Blank and Deb, IEEE Access 8, 2020) is imported where it is used, so that nothing else waits for it. The genes of a point are the
+logarithm of its spindle speed, and where its feed lies between the smallest and the largest that keeps the constraints there
+(`CuttingProblem.feed_between`): optima lie on constraints, which breeding comes near to but does not meet when feeds are bred themselves.
+Speeds at which no feed keeps them lose against any other by the library's rule for constraints. Same seed, same result.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.plan.cutting.optimization.problem import (
     CuttingProblem,
@@ -138,11 +141,12 @@ def _run(
     from pymoo.operators.mutation.pm import PM
     from pymoo.optimize import minimize
 
-    low = np.log([problem.spindle[0], problem.feed[0]])
-    span = np.log([problem.spindle[1], problem.feed[1]]) - low
+    low, high = np.log(problem.spindle)
 
-    def points_of(shares: Floats) -> Floats:
-        return np.asarray(np.exp(low + np.asarray(shares, float) * span))
+    def points_of(genes: Floats) -> Floats:
+        speed, step = np.asarray(genes, float).T
+        spindle = np.clip(np.exp(low + speed * (high - low)), *problem.spindle)
+        return np.column_stack([spindle, problem.feed_between(spindle, step)])
 
     class Choice(Problem):
         def __init__(self) -> None:
@@ -158,7 +162,7 @@ def _run(
             n, fz = points_of(x).T
             out["F"] = values(n, fz)
             if problem.constraints:
-                out["G"] = (problem.shares(n, fz) - 1.0).T
+                out["G"] = (problem.shares(n, fz) - 1.0 - tolerance.PARAMETRIC).T
 
     def look(running: Any) -> None:
         progress.check()
@@ -170,6 +174,7 @@ def _run(
             Choice(),
             algorithm(
                 pop_size=settings.population,
+                eliminate_duplicates=False,
                 crossover=SBX(prob=settings.crossover, eta=CROWDED),
                 mutation=PM(prob=1.0, prob_var=settings.mutation, eta=CROWDED),
             ),

@@ -92,26 +92,34 @@ def problem_of(
     """
     if not can_be_optimised(operation):
         return None
-    tool, data, optimize = operation.cutter, operation.data, settings.optimize
-    handbook = data.spindle, data.feed_per_tooth
-    spindle, bounds = _spindle_range(tool, material, machine, settings.cutting, data)
-    steady = Engagement(width=data.width, depth=data.depth, share=1.0, at="")
     peak = largest_engagement(operation, earlier, choices)
     if peak.slows:
         peak = replace(peak, share=min(peak.share, LEAST_SHARE))
+    return problem_at(operation, steady_of(operation.data), peak, material, machine, settings)
+
+
+def steady_of(data: CuttingData) -> Engagement:
+    """Return the engagement that an operation's data are chosen for."""
+    return Engagement(width=data.width, depth=data.depth, share=1.0, at="")
+
+
+def problem_at(
+    operation: Operation,
+    steady: Engagement,
+    peak: Engagement,
+    material: Material,
+    machine: Machine,
+    settings: OptimizationSettings,
+) -> CuttingProblem:
+    """Return the choice of an operation in a steady engagement and a largest one."""
+    tool, optimize = operation.cutter, settings.optimize
+    data = replace(operation.data, width=steady.width, depth=steady.depth)
+    spindle, bounds = _spindle_range(tool, material, machine, settings.cutting, data)
     is_rough = operation.kind in ROUGHING
     deflection = optimize.rough_deflection if is_rough else optimize.finish_deflection
     share = settings.cutting.power_share
     feed = min(machine.feed_max, settings.cutting.feed_limit)
     names = _power_names(machine, spindle)
-    constraints = [
-        limits.power_limit(names[0], machine, material, tool, steady, share),
-        limits.power_limit(names[1], machine, material, tool, peak, share),
-        limits.force_limit(material, tool, peak, optimize.force),
-        limits.bending_limit(material, tool, steady, deflection),
-        limits.feed_limit(tool.teeth, feed),
-        *(() if is_rough else _feed_marks(tool, data, optimize)),
-    ]
     return CuttingProblem(
         length=UNIT_LENGTH,
         teeth=tool.teeth,
@@ -123,8 +131,15 @@ def problem_of(
             rate=optimize.machine_rate,
             tool=optimize.tool_cost,
         ),
-        constraints=tuple(constraints),
-        handbook=handbook,
+        constraints=(
+            limits.power_limit(names[0], machine, material, tool, steady, share),
+            limits.power_limit(names[1], machine, material, tool, peak, share),
+            limits.force_limit(material, tool, peak, optimize.force),
+            limits.bending_limit(material, tool, steady, deflection),
+            limits.feed_limit(tool.teeth, feed),
+            *(() if is_rough else _feed_marks(tool, data, optimize)),
+        ),
+        handbook=(data.spindle, data.feed_per_tooth),
         spindle_bounds=bounds,
         feed_bounds=(CHIP, CHIP),
         load=names[1],

@@ -106,6 +106,13 @@ class CuttingProblem:
         bottom = self.feed[0] * (1.0 - tolerance.PARAMETRIC)
         return np.where(top >= bottom, np.maximum(top, self.feed[0]), np.nan)
 
+    def feed_between(self, spindle: Floats, step: Floats) -> Floats:
+        """Return feeds per tooth (n,) mm between the smallest (step 0) and the largest that keeps all constraints (step 1), in equal
+        ratios; the smallest where even that does not keep them."""
+        largest = self.largest_feed(spindle)
+        span = np.where(np.isfinite(largest), largest / self.feed[0], 1.0)
+        return np.asarray(np.where(step == 1.0, self.feed[0] * span, self.feed[0] * span**step))
+
     def is_feasible(self, spindle: ArrayLike, feed: ArrayLike) -> Bools:
         """Return whether points (n,) keep their ranges and all constraints."""
         n, fz = np.atleast_1d(np.asarray(spindle, float)), np.atleast_1d(np.asarray(feed, float))

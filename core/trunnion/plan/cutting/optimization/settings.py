@@ -96,10 +96,10 @@ class GeneticSettings:
     """How the genetic algorithm searches."""
 
     population: int = setting(
-        60, low=8, high=1000, label="Population", help="Points of a generation."
+        40, low=8, high=1000, label="Population", help="Points of a generation."
     )
     generations: int = setting(
-        80, low=1, high=5000, label="Generations", help="Generations that are bred."
+        40, low=1, high=5000, label="Generations", help="Generations that are bred."
     )
     crossover: float = setting(
         0.9,
