@@ -152,8 +152,8 @@ def search_of(
     """Return how the genetic algorithm went for one operation; None where there are no models for it or nothing keeps the limits."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
-    found = choices_of(session.process, context.shop, session.choices, progress)
-    choice = next((c for c in found if c.handbook.id == operation), None)
+    found = choices_of(session.process, context.shop, session.choices, progress, operation)
+    choice = found[0] if found else None
     if choice is None or choice.problem is None or choice.optimum is None:
         return None
     problem, settings = choice.problem, OptimizationSettings.of(session.choices)

@@ -75,8 +75,12 @@ def choices_of(
     shop: Shop,
     choices: Mapping[str, Value],
     progress: Progress = NO_PROGRESS,
+    only: str = "",
 ) -> tuple[Choice, ...]:
-    """Return every operation with the data of the tables and with those of the optimiser, whichever are in use; none is changed."""
+    """Return every operation with the data of the tables and with those of the optimiser, whichever are in use; none is changed.
+
+    Where the id of one is given, that `only`.
+    """
     material, done, found = shop.material(process.material), list[Operation](), list[Choice]()
     for operation in progress.each(process.operations):
         earlier = [o for o in done if o.setup == operation.setup]
@@ -85,7 +89,8 @@ def choices_of(
         handbook = with_peak(
             _balanced(operation, process, material, shop, own.cutting), earlier, material, choices
         )
-        found.append(_choice(handbook, earlier, material, machine, own, choices, progress))
+        if only in ("", operation.id):
+            found.append(_choice(handbook, earlier, material, machine, own, choices, progress))
         done.append(handbook)
     return tuple(found)
 
