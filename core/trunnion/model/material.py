@@ -32,7 +32,8 @@ class Material:
     `speed_rough`, `speed_finish` vc m/min; `feeds` rows (diameter, fz smallest, fz largest) mm; `force` k_c1.1 N/mm2 with exponent
     `force_exponent`;
     `depth_factor` ap over D and `width_factor` ae over D for roughing; `density` kg/dm3. `speed_range` vc m/min, the smallest and the
-    largest speed that cutters bear, and `life`: None where the catalogue has none.
+    largest speed that cutters bear, and `life`: None where the catalogue has none. `feed_share` says where between smallest and largest
+    the tables' fz lies, `feed_range` between which such shares another may be chosen.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Material:
     depth_factor: float
     width_factor: float
     source: str
+    feed_range: tuple[float, float] = (0.0, 0.0)
     speed_range: tuple[float, float] | None = None
     life: TaylorLife | None = None
 

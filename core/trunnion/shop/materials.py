@@ -47,6 +47,11 @@ def _material(entry: CatalogueEntry) -> Material:
     if not in_order or not all(0.0 < low <= high <= _LARGEST_FEED for _, low, high in rows):
         raise feeds.wrong("rows must be (diameter, smallest fz, largest fz) with growing diameters")
     share = feeds.number("share", 0.0, 1.0)
+    shares = feeds.numbers("range", 0.0, 1.0) if feeds.has("range") else (0.0, share)
+    if len(shares) != 2 or not shares[0] <= share <= shares[1]:
+        raise feeds.wrong(
+            "range must be two shares, the smallest and the largest, with share between them"
+        )
     feeds.done()
     force = sourced("force")
     strength, exponent = force.number("value", 1.0, _STRONGEST), force.number("exponent", 0.0, 1.0)
@@ -60,6 +65,7 @@ def _material(entry: CatalogueEntry) -> Material:
         speed_finish=value("speed_finish", 1.0, _FASTEST),
         feeds=rows,
         feed_share=share,
+        feed_range=(shares[0], shares[1]),
         force=strength,
         force_exponent=exponent,
         depth_factor=value("depth_factor", 0.01, 5.0),

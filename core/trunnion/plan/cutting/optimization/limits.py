@@ -38,6 +38,7 @@ POWER, PEAK_POWER, TORQUE, PEAK_TORQUE = (
     "torque",
     "torque at most engagement",
 )
+CHIP_PEAK = "chip at most engagement"
 FORCE, BENDING, FEED, RA, RT = "force", "deflection", "machine feed", "Ra", "Rt"
 
 
@@ -118,6 +119,11 @@ def compliance(tool: Tool, height: float) -> float:
         inertia = math.pi * diameter**4 / 64.0
         total += (b**3 - a**3) / (3.0 * YOUNG * inertia)
     return total
+
+
+def chip_limit(unit: float, most: float) -> Constraint:
+    """Return the constraint that the thickest chip, `unit` times the feed per tooth, is at most `most` mm."""
+    return _even(CHIP_PEAK, 1.0, unit / most)
 
 
 def feed_limit(teeth: int, most: float) -> Constraint:

@@ -45,6 +45,8 @@ from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, trimmed
 UNIT_LENGTH = MM_PER_METRE
 """mm of way that times and costs are for: what operations cut is not known before their paths are, and does not change the choice."""
 SPEED, SPINDLE, CHIP = "cutting speed", "spindle speed", "chip thickness"
+PEAK_CHIP = 1.25
+"""Thickest chip at the largest engagement over the largest of the material's range: half of what the proof bears over the table."""
 WEAR = "tool life"
 """What stops an optimum that no limit does: quicker ones wear more than they gain."""
 
@@ -93,8 +95,6 @@ def problem_of(
     if not can_be_optimised(operation):
         return None
     peak = largest_engagement(operation, earlier, choices)
-    if peak.slows:
-        peak = replace(peak, share=min(peak.share, LEAST_SHARE))
     return problem_at(operation, steady_of(operation.data), peak, material, machine, settings)
 
 
@@ -120,6 +120,7 @@ def problem_at(
     share = settings.cutting.power_share
     feed = min(machine.feed_max, settings.cutting.feed_limit)
     names = _power_names(machine, spindle)
+    slowest = replace(peak, share=min(peak.share, LEAST_SHARE)) if peak.slows else peak
     return CuttingProblem(
         length=UNIT_LENGTH,
         teeth=tool.teeth,
@@ -133,8 +134,9 @@ def problem_at(
         ),
         constraints=(
             limits.power_limit(names[0], machine, material, tool, steady, share),
-            limits.power_limit(names[1], machine, material, tool, peak, share),
-            limits.force_limit(material, tool, peak, optimize.force),
+            limits.power_limit(names[1], machine, material, tool, slowest, share),
+            _peak_chip(tool, material, data, settings.cutting, peak),
+            limits.force_limit(material, tool, slowest, optimize.force),
             limits.bending_limit(material, tool, steady, deflection),
             limits.feed_limit(tool.teeth, feed),
             *(() if is_rough else _feed_marks(tool, data, optimize)),
@@ -176,17 +178,35 @@ def _spindle_range(
 def _feed_range(
     tool: Tool, material: Material, settings: CuttingSettings, data: CuttingData
 ) -> tuple[float, float]:
-    """Return the smallest and the largest feed per tooth in mm of the material's table, for chip thinning and slenderness as in the data.
+    """Return the smallest and the largest feed per tooth in mm of the material's range, for chip thinning and slenderness as in the data.
 
-    Where limits made the data's feed smaller than the table's smallest, theirs is the smallest.
+    Where limits made the data's feed smaller than the range's smallest, theirs is the smallest.
     """
     thinning = min(chip_thinning(tool.diameter, data.width), settings.thinning_limit)
     share = thinning * slenderness(tool, settings) * settings.feed_share
-    low, high = (
-        share * feed_at([(row[0], row[column]) for row in material.feeds], tool.diameter)
-        for column in (1, 2)
-    )
-    return min(low, data.feed_per_tooth), max(high, min(low, data.feed_per_tooth))
+    low, high = (share * _table_chip(material, tool, r) for r in material.feed_range)
+    low = min(low, data.feed_per_tooth)
+    return low, max(high, low)
+
+
+def _table_chip(material: Material, tool: Tool, share: float) -> float:
+    """Return the feed per tooth in mm at a share of what lies between the table's smallest and largest."""
+    rows = [(d, low + share * (high - low)) for d, low, high in material.feeds]
+    return feed_at(rows, tool.diameter)
+
+
+def _peak_chip(
+    tool: Tool, material: Material, data: CuttingData, settings: CuttingSettings, peak: Engagement
+) -> Constraint:
+    """Return the constraint on the thickest chip at the largest engagement: a feed that was raised for thin chips meets thick ones there.
+
+    It may be what the tables' own data come to there.
+    """
+    width = min(peak.width, tool.diameter)
+    angle = math.acos(max(1.0 - 2.0 * width / tool.diameter, -1.0))
+    unit = peak.share * math.sin(min(angle, 0.5 * math.pi))
+    top = settings.feed_share * _table_chip(material, tool, material.feed_range[1])
+    return limits.chip_limit(unit, max(PEAK_CHIP * top, unit * data.feed_per_tooth))
 
 
 def _life_of(tool: Tool, material: Material, data: CuttingData) -> OfSpeed:
