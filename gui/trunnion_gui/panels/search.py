@@ -34,6 +34,11 @@ class SearchBlock(Foldout):
         self.toggled.connect(lambda _: self._search())
         self._worker.replied.connect(self._receive)
 
+    @property
+    def operation(self) -> str:
+        """The id of the operation that is shown; empty for none."""
+        return self._operation.id if self._operation is not None else ""
+
     def use_theme(self, theme: Theme) -> None:
         super().use_theme(theme)
         for plot in (self.convergence, self.front):
@@ -49,7 +54,7 @@ class SearchBlock(Foldout):
         self._search()
 
     def _search(self) -> None:
-        if self._operation is None or not self.is_open:
+        if self._operation is None or self.is_folded:
             return
         self.words.setText(tr("searching…"))
         session = self._document.shown
@@ -94,7 +99,8 @@ def choice_words(operation: Operation) -> str:
     if not data.handbook_feed:
         return tr("{id}: data of the tables").format(id=operation.id)
     words = tr(
-        "{id}: {spindle} 1/min and {feed} mm/min instead of {old_spindle} and {old_feed}; {gain} less time for the same way; bound by {bound}"
+        "{id}: {spindle} 1/min and {feed} mm/min instead of {old_spindle} and {old_feed}; {gain} less time for the same way; "
+        "bound by {bound}"
     )
     return words.format(
         id=operation.id,
