@@ -25,6 +25,7 @@ GENERAL = (
     "planning.optimize",
     "planning.change",
     "planning.estimate",
+    "planning.optimum",
     "programs.program",
     "programs.verify",
     "programs.post",

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from trunnion.model.operation import Operation
+from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.verdict import Verdict
+
+LAID = "its path takes off most"
+"""Where the highest load of a path is met as it was laid."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,10 +33,16 @@ class SpindleLoad:
 
 
 def spindle_loads(
-    operations: Iterable[Operation], verdict: Verdict | None = None
+    operations: Iterable[Operation],
+    verdict: Verdict | None = None,
+    paths: Iterable[OperationPath] = (),
 ) -> tuple[SpindleLoad, ...]:
-    """Return the load of every operation that is not suppressed; what a verdict has measured stands in place of what was foreseen, but
-    for steady cutting, which it is never below."""
+    """Return the load of every operation that is not suppressed.
+
+    What a verdict has measured stands in place of what was foreseen, but for steady cutting, which it is never below. Without a verdict it
+    is never below what the operations' `paths` come to as they were laid.
+    """
+    laid = {p.operation: p.power for p in paths}
     proofs = {p.operation: p for p in verdict.operations} if verdict is not None else {}
     found = []
     for o in operations:
@@ -41,6 +50,8 @@ def spindle_loads(
             continue
         proof = proofs.get(o.id)
         peak, at = (proof.power, "") if proof is not None else (o.data.peak_power, o.data.peak_at)
+        if proof is None and laid.get(o.id, 0.0) > peak:
+            peak, at = laid[o.id], LAID
         is_peak = peak > o.data.power
         found.append(
             SpindleLoad(

@@ -10,12 +10,30 @@ CONTROL = "linuxcnc"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class TaylorLife:
+    """Tool life by Taylor: `minutes` at `speed` vc m/min, with the exponent n of vc T^n = C.
+
+    Where it is known how life goes with the width of cut: `width` ae over D that the minutes are for, `width_exponent`, and the smallest
+    and the largest of such `widths` that were tried; beyond them life is that of the nearest one.
+    """
+
+    minutes: float
+    speed: float
+    exponent: float
+    width: float = 1.0
+    width_exponent: float = 0.0
+    widths: tuple[float, float] = (0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Material:
     """A work material with its starting values; every number's source stands in the catalogue.
 
     `speed_rough`, `speed_finish` vc m/min; `feeds` rows (diameter, fz smallest, fz largest) mm; `force` k_c1.1 N/mm2 with exponent
     `force_exponent`;
-    `depth_factor` ap over D and `width_factor` ae over D for roughing; `density` kg/dm3.
+    `depth_factor` ap over D and `width_factor` ae over D for roughing; `density` kg/dm3. `speed_range` vc m/min, the smallest and the
+    largest speed that cutters bear, and `life`: None where the catalogue has none. `feed_share` says where between smallest and largest
+    the tables' fz lies, `feed_range` between which such shares another may be chosen.
     """
 
     name: str
@@ -31,6 +49,9 @@ class Material:
     depth_factor: float
     width_factor: float
     source: str
+    feed_range: tuple[float, float] = (0.0, 0.0)
+    speed_range: tuple[float, float] | None = None
+    life: TaylorLife | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -23,7 +23,8 @@ class CuttingData:
     `widest` mm: what may stand in front of the cutter at once where the area says so (0: only the strategy knows); `slot_share`: share of
     its feed in full width that the spindle leaves a strategy; `peak_power` kW and `peak_torque` Nm at the largest engagement that the
     strategy can meet, and `peak_at`, in words, where that is; `routed_depth` mm: the depth that the route chose where
-    the spindle allows less (0: the same).
+    the spindle allows less (0: the same). Where spindle speed and feed were chosen by the optimiser: `handbook_spindle` 1/min and
+    `handbook_feed` mm/min of the material's tables (0 elsewhere), and `bound_by`, what stops a quicker choice, in words.
     `spindle_mode` and `feed_mode` say what a program gives of them: at a constant surface speed `spindle` is that of a rotating tool's own
     diameter, and `highest_spindle` 1/min is never passed.
     """
@@ -49,6 +50,9 @@ class CuttingData:
     spindle_mode: SpindleMode = added(SpindleMode.RPM, written=False)
     highest_spindle: float = added(0.0, written=False)
     feed_mode: FeedMode = added(FeedMode.MINUTE, written=False)
+    handbook_spindle: float = added(0.0, written=False)
+    handbook_feed: float = added(0.0, written=False)
+    bound_by: str = added("", written=False)
 
     def __post_init__(self) -> None:
         if self.spindle_mode is SpindleMode.SURFACE and self.highest_spindle <= 0.0:
@@ -58,6 +62,11 @@ class CuttingData:
     def feed_per_revolution(self) -> float:
         """The feed in mm a revolution."""
         return per_revolution(self.feed, self.spindle)
+
+    @property
+    def feed_gain(self) -> float:
+        """How much less time the same way takes than with the tables' feed, as a share; 0 where the data are the tables'."""
+        return 1.0 - self.handbook_feed / self.feed if self.handbook_feed > 0.0 else 0.0
 
     @property
     def highest_power(self) -> float:

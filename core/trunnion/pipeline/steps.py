@@ -31,6 +31,7 @@ from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settin
 from trunnion.plan.blank import BlankSettings
 from trunnion.plan.contract import RouteJob, planner_for
 from trunnion.plan.cutting.milling import CuttingSettings
+from trunnion.plan.cutting.optimization.settings import GeneticSettings, OptimizeSettings
 from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.peak import overloads
 from trunnion.plan.repair.contract import RepairJob
@@ -208,7 +209,11 @@ def _optimize(session: Session, context: Context, progress: Progress) -> Result:
         raise BadCall("no operations yet: generate the route first")
     routed = session.process
     balanced = balance(
-        routed, context.shop, checked(choose(CuttingSettings, session.choices)), session.choices
+        routed,
+        context.shop,
+        checked(choose(CuttingSettings, session.choices)),
+        session.choices,
+        progress,
     )
     return Result(
         session=replace(session, process=balanced), findings=overloads(balanced.operations)
@@ -335,7 +340,7 @@ STEP_TABLE: tuple[Step, ...] = (
         name="optimize",
         title="Optimize",
         after=("route",),
-        settings=lambda: (CuttingSettings,),
+        settings=lambda: (CuttingSettings, OptimizeSettings, GeneticSettings),
         work=_optimize,
         reads=lambda s, b: (
             _record_key(s, "route"),

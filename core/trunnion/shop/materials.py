@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from trunnion.model.material import Material
+from trunnion.model.material import Material, TaylorLife
 from trunnion.shop.cutters import ISO_GROUPS
 from trunnion.shop.reading import CatalogueEntry, by_name, entries
 
@@ -14,6 +14,7 @@ _DENSEST = 25.0
 _FASTEST = 5000.0
 _LARGEST_FEED = 10.0
 _STRONGEST = 10000.0
+_LONGEST_LIFE = 10000.0
 
 
 def load_materials(user_folder: Path | None) -> dict[str, Material]:
@@ -46,6 +47,11 @@ def _material(entry: CatalogueEntry) -> Material:
     if not in_order or not all(0.0 < low <= high <= _LARGEST_FEED for _, low, high in rows):
         raise feeds.wrong("rows must be (diameter, smallest fz, largest fz) with growing diameters")
     share = feeds.number("share", 0.0, 1.0)
+    shares = feeds.numbers("range", 0.0, 1.0) if feeds.has("range") else (0.0, share)
+    if len(shares) != 2 or not shares[0] <= share <= shares[1]:
+        raise feeds.wrong(
+            "range must be two shares, the smallest and the largest, with share between them"
+        )
     feeds.done()
     force = sourced("force")
     strength, exponent = force.number("value", 1.0, _STRONGEST), force.number("exponent", 0.0, 1.0)
@@ -59,14 +65,41 @@ def _material(entry: CatalogueEntry) -> Material:
         speed_finish=value("speed_finish", 1.0, _FASTEST),
         feeds=rows,
         feed_share=share,
+        feed_range=(shares[0], shares[1]),
         force=strength,
         force_exponent=exponent,
         depth_factor=value("depth_factor", 0.01, 5.0),
         width_factor=value("width_factor", 0.01, 1.0),
+        speed_range=_speed_range(sourced("speed_range")) if entry.has("speed_range") else None,
+        life=_life(sourced("tool_life")) if entry.has("tool_life") else None,
         source="; ".join(f"{name}: {words}" for name, words in sources.items()),
     )
     entry.done()
     return material
+
+
+def _speed_range(entry: CatalogueEntry) -> tuple[float, float]:
+    low, high = entry.number("low", 1.0, _FASTEST), entry.number("high", 1.0, _FASTEST)
+    if low > high:
+        raise entry.wrong(f"low must not be above high; got {low:g} and {high:g}")
+    entry.done()
+    return low, high
+
+
+def _life(entry: CatalogueEntry) -> TaylorLife:
+    widths = entry.numbers("widths", 0.01, 1.0) if entry.has("widths") else (0.01, 1.0)
+    if len(widths) != 2 or widths[0] > widths[1]:
+        raise entry.wrong("widths must be the smallest and the largest ae over D that were tried")
+    life = TaylorLife(
+        minutes=entry.number("minutes", 0.1, _LONGEST_LIFE),
+        speed=entry.number("speed", 1.0, _FASTEST),
+        exponent=entry.number("exponent", 0.05, 1.0),
+        width=entry.number("width", 0.01, 1.0, 1.0),
+        width_exponent=entry.number("width_exponent", 0.0, 5.0, 0.0),
+        widths=(widths[0], widths[1]),
+    )
+    entry.done()
+    return life
 
 
 def feed_at(rows: Sequence[tuple[float, float]], diameter: float) -> float:

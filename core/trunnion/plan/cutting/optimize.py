@@ -1,11 +1,11 @@
-"""The cutting data of a whole process computed again under other limits, each operation with the peak of its load."""
+"""The cutting data of a whole process computed again: by tables or by the optimiser, each operation with the peak of its load."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
-from trunnion.model.material import Material
+from trunnion.model.material import Machine, Material
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.cutting.drilling import AXIAL, drilling_data
@@ -16,29 +16,112 @@ from trunnion.plan.cutting.milling import (
     roughing_depth,
     roughing_width,
 )
-from trunnion.plan.cutting.peak import with_peak
+from trunnion.plan.cutting.optimization.operation import (
+    OptimizationSettings,
+    at_optimum,
+    problem_of,
+    solve,
+)
+from trunnion.plan.cutting.optimization.problem import CuttingProblem, Optimum
+from trunnion.plan.cutting.optimization.settings import OPTIMISED
+from trunnion.plan.cutting.peak import is_overload, with_peak
 from trunnion.plan.cutting.power import DRILL
-from trunnion.settings import Value, choose, declared
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.settings import Value, declared
 from trunnion.shop import Shop
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choice:
+    """An operation with the data of the tables, and with those of the optimiser: the same where it found none better or has no models for
+    it, and then there is neither problem nor optimum."""
+
+    handbook: Operation
+    chosen: Operation
+    problem: CuttingProblem | None = None
+    optimum: Optimum | None = None
+
+
 def balance(
-    process: ProcessTree, shop: Shop, settings: CuttingSettings, choices: Mapping[str, Value]
+    process: ProcessTree,
+    shop: Shop,
+    settings: CuttingSettings,
+    choices: Mapping[str, Value],
+    progress: Progress = NO_PROGRESS,
 ) -> ProcessTree:
     """Return the process with every operation's data computed again under these limits; what a person set by hand stays.
 
-    Every operation is told the peak of its load under a session's `choices` for the strategies.
+    Every operation is told the peak of its load under a session's `choices` for the strategies. `optimize.data` says whether spindle speed
+    and feed are those of the tables or the optimiser's.
     """
     material, done = shop.material(process.material), list[Operation]()
-    for operation in process.operations:
-        own = choose(CuttingSettings, {**choices, **operation.choices})
-        balanced = recomputed(
-            operation, process, material, shop, own if _of_its_own(operation) else settings
+    for operation in progress.each(process.operations):
+        earlier = [o for o in done if o.setup == operation.setup]
+        own = _own_choices(operation, choices)
+        limits = own.cutting if _of_its_own(operation) else settings
+        handbook = with_peak(
+            recomputed(operation, process, material, shop, limits), earlier, material, choices
         )
-        done.append(
-            with_peak(balanced, [o for o in done if o.setup == operation.setup], material, choices)
-        )
+        if own.optimize.data == OPTIMISED:
+            machine = shop.machine(process.setup(operation.setup).machine)
+            own = replace(own, cutting=limits)
+            handbook = _choice(handbook, earlier, material, machine, own, choices, progress).chosen
+        done.append(handbook)
     return replace(process, operations=tuple(done))
+
+
+def choices_of(
+    process: ProcessTree,
+    shop: Shop,
+    choices: Mapping[str, Value],
+    progress: Progress = NO_PROGRESS,
+    only: str = "",
+) -> tuple[Choice, ...]:
+    """Return every operation with the data of the tables and with those of the optimiser, whichever are in use; none is changed.
+
+    Where the id of one is given, that `only`.
+    """
+    material, done, found = shop.material(process.material), list[Operation](), list[Choice]()
+    for operation in progress.each(process.operations):
+        earlier = [o for o in done if o.setup == operation.setup]
+        own = _own_choices(operation, choices)
+        machine = shop.machine(process.setup(operation.setup).machine)
+        handbook = with_peak(
+            recomputed(operation, process, material, shop, own.cutting), earlier, material, choices
+        )
+        if only in ("", operation.id):
+            found.append(_choice(handbook, earlier, material, machine, own, choices, progress))
+        done.append(handbook)
+    return tuple(found)
+
+
+def _own_choices(operation: Operation, choices: Mapping[str, Value]) -> OptimizationSettings:
+    return OptimizationSettings.of({**choices, **operation.choices})
+
+
+def _choice(
+    handbook: Operation,
+    earlier: Sequence[Operation],
+    material: Material,
+    machine: Machine,
+    settings: OptimizationSettings,
+    choices: Mapping[str, Value],
+    progress: Progress,
+) -> Choice:
+    """Return an operation's choice; the tables' data stay where nothing keeps the limits, or the load would pass them all the same."""
+    problem = problem_of(handbook, earlier, material, machine, settings, choices)
+    optimum = None if problem is None else solve(problem, settings, progress)
+    if problem is None or optimum is None:
+        return Choice(handbook=handbook, chosen=handbook, problem=problem)
+    chosen = with_peak(
+        at_optimum(handbook, problem, optimum, material, machine, settings.cutting),
+        earlier,
+        material,
+        choices,
+    )
+    if is_overload(chosen.data):
+        chosen = handbook
+    return Choice(handbook=handbook, chosen=chosen, problem=problem, optimum=optimum)
 
 
 def _of_its_own(operation: Operation) -> bool:

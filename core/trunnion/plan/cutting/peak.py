@@ -49,12 +49,10 @@ def with_peak(
 
     `earlier` are the operations before it in its setup, `choices` a session's settings by full key. Data set by hand keep their numbers.
     """
-    strategy = registry.get("strategies", operation.strategy)
-    settings = checked(choose(strategy.settings, {**choices, **operation.choices}))
-    before = _roughed_by(operation, earlier)
+    meets = _meets(operation, earlier, choices)
 
     def peak(data: CuttingData) -> Peak:
-        met = strategy.meets(operation.tool, data, settings, before)
+        met = meets(data)
         return Peak(met=met, power=_power(operation, data, met, material))
 
     data = operation.data
@@ -74,13 +72,35 @@ def with_peak(
     )
 
 
+def largest_engagement(
+    operation: Operation, earlier: Iterable[Operation], choices: Mapping[str, Value]
+) -> Engagement:
+    """Return the largest engagement that an operation's strategy can meet with its data."""
+    return _meets(operation, earlier, choices)(operation.data)
+
+
+def _meets(
+    operation: Operation, earlier: Iterable[Operation], choices: Mapping[str, Value]
+) -> Callable[[CuttingData], Engagement]:
+    strategy = registry.get("strategies", operation.strategy)
+    settings = checked(choose(strategy.settings, {**choices, **operation.choices}))
+    before = _roughed_by(operation, earlier)
+
+    def met(data: CuttingData) -> Engagement:
+        found: Engagement = strategy.meets(operation.tool, data, settings, before)
+        return found
+
+    return met
+
+
+def is_overload(data: CuttingData) -> bool:
+    """Return whether an operation's load passes the spindle's limit, in steady cutting or at the largest engagement."""
+    return _passes(data.highest_power, data.power_limit)
+
+
 def overloads(operations: Iterable[Operation]) -> tuple[Finding, ...]:
     """Return a finding for every operation whose load passes the spindle's limit."""
-    return tuple(
-        _overload(o)
-        for o in operations
-        if not o.suppressed and _passes(o.data.highest_power, o.data.power_limit)
-    )
+    return tuple(_overload(o) for o in operations if not o.suppressed and is_overload(o.data))
 
 
 def _overload(operation: Operation) -> Finding:
