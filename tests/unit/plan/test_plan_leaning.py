@@ -112,6 +112,33 @@ def test_a_floor_under_it_ends_where_its_upper_edge_is_seen_from_above() -> None
     assert not floor.region.minus(level.boundary.offset(1e-3))
 
 
+def test_a_flank_goes_along_the_upper_edge_of_a_wall_that_leans_over() -> None:
+    (rim,) = pocket_of("over")[0].overhang_rims()
+    edge = 0.5 * (leaning_pockets.BLOCK[0] + leaning_pockets.FOOT[0]) - 12.0 * math.tan(
+        math.radians(5.0)
+    )
+    # The part lies on the right of a guide line: along high x it runs towards high y, and round both corners.
+    setup, curved = routed("over")[1].setups[0], pocket_of("over")[1]
+    run = setup.frame.to_world(
+        np.column_stack([rim.curve.points, np.full(len(rim.curve.points), rim.bottom)])
+    )
+    straight = run[np.abs(run[:, 0] - edge) < 0.02]
+    assert len(straight) >= 2 and straight[0, 1] < straight[-1, 1] - 10.0
+    assert run[:, 0].max() < edge + 0.02
+    assert (rim.top, rim.bottom) == pytest.approx((curved.skin.points[:, 2].max(), -12.0 + rim.top))
+
+
+def test_sides_beside_such_an_edge_come_after_it_and_need_not_keep_off_what_was_left_there() -> (
+    None
+):
+    found = operations("over")
+    assert list(found).index("overhang_rim-pocket-01") < list(found).index("leaning_side-pocket-01")
+    assert found["leaning_side-pocket-01"].choices["surface.overhang"] == 0.0
+    rim = found["overhang_rim-pocket-01"]
+    assert rim.tool.radius < 8.0 and rim.tool.corner_radius == 0.0
+    assert not any(id.startswith("overhang_rim") for id in operations("away"))
+
+
 def test_a_curved_floor_is_cut_at_a_constant_scallop_after_its_walls() -> None:
     found = list(operations("bowl"))
     order = [found.index(f"{k}-pocket-01") for k in ("rough", "leaning_side", "semi")]

@@ -16,7 +16,7 @@ from trunnion.plan.freeform.cutters.choice import (
 )
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
-from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, SCALLOP
+from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, OVERHANG, SCALLOP
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.panel.freeform.cutters import (
     LAP,
@@ -53,7 +53,7 @@ FLOOR_WIDTH = 0.6
 """Distance of a floor's passes over the width of the cutter's flat."""
 FOOT = 2.0
 """degrees: at the foot of sides over level floors, what leans less from level is the floor's; a fillet ends in it."""
-HANGING = 2.0
+BESIDE_OVERHANG = 2.0
 """Times what layers leave: beside walls that lean over it stands as high as the pocket is deep, thicker in corners."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
@@ -121,9 +121,13 @@ def side_tasks(
             continue
         left = pocket.layer_area().remaining(settings.cell, state.settings.floor_allowance)
         left += settings.step
-        if pocket.hang > 0.0:
+        hanging: dict[str, Value] = {}
+        if pocket.feature.id in known.rims:
+            # Outside of the rims of what leans over nothing stands any more, and no neck comes inside of them.
+            hanging = {OVERHANG: 0.0}
+        elif pocket.hang > 0.0:
             # What stays at a wall that leans over is nowhere finished: necks keep off more than elsewhere.
-            left *= HANGING
+            left *= BESIDE_OVERHANG
         shallowest = max(settings.steep - LAP, FOOT) if pocket.curved else FOOT
         steps = with_rounder_between(
             cutters,
@@ -136,6 +140,7 @@ def side_tasks(
                 SCALLOP: settings.scallop,
                 ALLOWANCE: 0.0,
                 f"{SIDES_STRATEGY}.shallowest": shallowest,
+                **hanging,
                 **chord_choices(SIDES_STRATEGY, settings.scallop),
                 **after_earlier(SIDES_STRATEGY, step.earlier),
             }

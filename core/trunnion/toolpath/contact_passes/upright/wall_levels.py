@@ -34,21 +34,21 @@ OPEN = 100.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LowestTips:
+class WallFoot:
     """How low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it; and the height
     of the highest such foot, -inf where there is none."""
 
     low: Floats
     highest_foot: float
 
-    def some(self, which: Bools, highest_foot: float) -> LowestTips:
+    def some(self, which: Bools, highest_foot: float) -> WallFoot:
         """Return those of some of the triangles, whose highest foot is given."""
-        return LowestTips(self.low[which], highest_foot)
+        return WallFoot(self.low[which], highest_foot)
 
 
 def lowest_tips(
     slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress
-) -> LowestTips:
+) -> WallFoot:
     """Return how low the tip comes on each triangle, and where the foot of upright walls is highest."""
     low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
     upright = np.flatnonzero(slopes.normal[:, 2] <= -UPWARD)
@@ -74,7 +74,7 @@ def lowest_tips(
     )
     # Where another wall stands in its way it is stopped by the top of that one, which is no foot.
     feet = stops[stops < high[upright, None]]
-    return LowestTips(low, float(feet.max(initial=-np.inf)))
+    return WallFoot(low, float(feet.max(initial=-np.inf)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,7 +86,7 @@ class WallLevels:
 
 
 def with_levels(
-    slopes: FacetSlopes, feet: LowestTips, tool: Tool, height: float, step: float
+    slopes: FacetSlopes, feet: WallFoot, tool: Tool, height: float, step: float
 ) -> list[WallLevels]:
     """Return the triangles with their levels: those of leaning faces and those of upright ones on levels of their own where that saves
     more than the passes cost that end where the two meet.
@@ -118,9 +118,7 @@ def _run(walls: WallLevels) -> float:
     return float((walls.slopes.area * side / np.diff(levels)[row - 1]).sum())
 
 
-def _levels(
-    slopes: FacetSlopes, feet: LowestTips, tool: Tool, height: float, step: float
-) -> Floats:
+def _levels(slopes: FacetSlopes, feet: WallFoot, tool: Tool, height: float, step: float) -> Floats:
     """Return the heights of the tip (p,) upwards, from the lowest position that is touched. Feet that lie higher have passes of their own,
     brought down from the level above them (`wall_foot`): there is one over the highest foot."""
     low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
