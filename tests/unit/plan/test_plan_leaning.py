@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ SHAPES = {
     "away": leaning_pockets.leaning_block,
     "over": leaning_pockets.mixed_block,
     "bowl": leaning_pockets.bowl_block,
+    "sharp bowl": partial(leaning_pockets.bowl_block, fillet=0.0),
 }
 
 
@@ -147,6 +148,16 @@ def test_a_curved_floor_is_cut_at_a_constant_scallop_after_its_walls() -> None:
     assert floor.strategy == "surface.constant"
     assert set(pocket_of("bowl")[0].curved) <= set(floor.faces)
     assert not not_planned("bowl")
+
+
+def test_a_sharp_foot_of_a_curved_floor_gets_an_end_sharper_than_any_ball() -> None:
+    floors = [o for o in operations("sharp bowl").values() if o.kind == "curved_floor"]
+    *balls, last = [o.tool for o in floors]
+    assert balls and all(t.form == "ball" for t in balls)
+    assert last.form == "bull" and last.corner_radius < min(t.corner_radius for t in balls)
+    assert floors[-1].choices["surface.earlier"] == balls[-1].name
+    # In a fillet there is nothing for it.
+    assert {o.tool.form for o in operations("bowl").values() if o.kind == "curved_floor"} == {"ball"}
 
 
 def test_a_typical_plan_without_layers_refuses_leaning_walls() -> None:

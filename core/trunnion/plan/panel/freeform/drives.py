@@ -16,7 +16,6 @@ from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.progress import Progress
 
-
 OVERHANG_RIM = "overhang_rim"
 """The kind of operation that goes along the upper edges of walls that lean over."""
 

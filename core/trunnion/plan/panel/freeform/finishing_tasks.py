@@ -26,6 +26,7 @@ from trunnion.plan.panel.freeform.cutters import (
     level_time,
     no_cutter,
     report_unreached,
+    sharper_steps,
     side_cutters,
     tool_change,
 )
@@ -188,6 +189,8 @@ def _on_curved_floors(
             partial(area_rate, state, height=settings.scallop),
             tool_change(state),
         )
+        if not semi:
+            steps = (*steps, *sharper_steps(state, known, pocket, samples, steps))
         # Semi-finishing makes the load even where the first cutter goes: what that leaves is little, and none of its rests are.
         for n, step in enumerate(steps[:1] if semi else steps):
             is_after_layers = semi or step.earlier is not None or settings.semi_allowance <= 0.0

@@ -18,7 +18,7 @@ FLOOR_REST = "plane.wall.floor_rest"
 def overhang_rim_tasks(
     state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
-    """Ask for passes along overhang rims by a cutter that comes through the corners beside them; where none does, what layers left stays."""
+    """Ask for passes along the rims of overhangs by a cutter that comes through the corners beside; where none does, the strip stays."""
     found = []
     for known, pocket in pockets_of(state, stage, features):
         rims = pocket.overhang_rims()
