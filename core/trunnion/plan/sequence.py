@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 CIRCLE = "operations wait for each other in a circle or for one that is not planned"
@@ -23,8 +23,8 @@ def ordered(jobs: Sequence[OrderedOperation]) -> tuple[str, ...]:
     """Return the ids in an order that keeps every `after` with the fewest tool changes; the same jobs give the same order.
 
     With one tool everything that is ready is done before the next tool comes: putting it off never saves a change. So the search goes
-    over sequences of tools only, breadth first, and the first that does everything has the fewest. Raises `ValueError` when jobs wait
-    for each other in a circle or for one that isn't there.
+    over sequences of tools only; of those with the fewest changes it takes the first one, tools ranked by their first stage. Raises
+    `ValueError` when jobs wait for each other in a circle or for one that isn't there.
     """
     places = {j.id: n for n, j in enumerate(jobs)}
     if any(not j.after <= places.keys() for j in jobs):
@@ -35,21 +35,65 @@ def ordered(jobs: Sequence[OrderedOperation]) -> tuple[str, ...]:
     # Sets of jobs as bits of a number: many thousands of them are looked at.
     waits = [sum(1 << places[i] for i in j.after) for j in jobs]
     of_tool = {t: [n for n, j in enumerate(jobs) if j.tool == t] for t in tools}
-    everything = (1 << len(jobs)) - 1
-    layer: dict[int, tuple[str, ...]] = {0: ()}
-    seen = {0}
-    while layer:
-        if everything in layer:
-            return _walked(jobs, waits, of_tool, layer[everything])
-        following: dict[int, tuple[str, ...]] = {}
-        for done, sequence in layer.items():
-            for tool in tools:
-                more = _with_all_ready(of_tool[tool], waits, done)
-                if more not in seen:
-                    seen.add(more)
-                    following[more] = (*sequence, tool)
-        layer = following
-    raise ValueError(CIRCLE)
+    search = _ToolSearch(waits, [of_tool[t] for t in tools])
+    done, sequence = 0, []
+    count = search.fewest(done)
+    while count:
+        number, done = next(
+            (n, more) for n, more in search.steps(done) if search.fewest(more) == count - 1
+        )
+        sequence.append(tools[number])
+        count -= 1
+    return _walked(jobs, waits, of_tool, sequence)
+
+
+class _ToolSearch:
+    """How many tools have to come one after the other for all jobs that a set of them (bits) leaves; `waits` are the jobs (bits) that each
+    one waits for, `rows` those of each tool."""
+
+    def __init__(self, waits: Sequence[int], rows: Sequence[Sequence[int]]) -> None:
+        self._waits, self._rows = waits, rows
+        self._own = [sum(1 << n for n in own) for own in rows]
+        self._everything = (1 << len(waits)) - 1
+        self._fewest: dict[int, int] = {self._everything: 0}
+
+    def steps(self, done: int) -> list[tuple[int, int]]:
+        """Return the tools, by number, that have something to do now, with the jobs that are done after each."""
+        found = (
+            (number, _with_all_ready(own, self._waits, done))
+            for number, own in enumerate(self._rows)
+            if self._own[number] & ~done
+        )
+        return [(number, more) for number, more in found if more != done]
+
+    def fewest(self, done: int) -> int:
+        """Return how many tools come after a set of jobs that is done; raise `ValueError` where some are never ready.
+
+        Breadth first, by two rules that lose no shortest sequence. A tool that can do all of its jobs comes at once: it has to come some
+        time, and the sooner the more the others find ready. And a set of jobs that another one as many tools on holds is not looked at.
+        """
+        if done not in self._fewest:
+            layer, count = {done}, 0
+            while self._everything not in layer:
+                following: set[int] = set()
+                for here in layer:
+                    steps = self.steps(here)
+                    whole = [more for number, more in steps if not self._own[number] & ~more]
+                    following.update(whole[:1] or [more for _, more in steps])
+                if not following:
+                    raise ValueError(CIRCLE)
+                layer, count = _largest(following), count + 1
+            self._fewest[done] = count
+        return self._fewest[done]
+
+
+def _largest(sets: Collection[int]) -> set[int]:
+    """Return the sets (bits) that no other one holds."""
+    found: list[int] = []
+    for one in sorted(sets, key=lambda s: (-s.bit_count(), s)):
+        if not any(one & ~other == 0 for other in found):
+            found.append(one)
+    return set(found)
 
 
 def _with_all_ready(rows: Sequence[int], waits: Sequence[int], done: int) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ SHAPES = {
     "away": leaning_pockets.leaning_block,
     "over": leaning_pockets.mixed_block,
     "bowl": leaning_pockets.bowl_block,
+    "sharp bowl": partial(leaning_pockets.bowl_block, fillet=0.0),
 }
 
 
@@ -112,6 +113,33 @@ def test_a_floor_under_it_ends_where_its_upper_edge_is_seen_from_above() -> None
     assert not floor.region.minus(level.boundary.offset(1e-3))
 
 
+def test_a_flank_goes_along_the_upper_edge_of_a_wall_that_leans_over() -> None:
+    (rim,) = pocket_of("over")[0].overhang_rims()
+    edge = 0.5 * (leaning_pockets.BLOCK[0] + leaning_pockets.FOOT[0]) - 12.0 * math.tan(
+        math.radians(5.0)
+    )
+    # The part lies on the right of a guide line: along high x it runs towards high y, and round both corners.
+    setup, curved = routed("over")[1].setups[0], pocket_of("over")[1]
+    run = setup.frame.to_world(
+        np.column_stack([rim.curve.points, np.full(len(rim.curve.points), rim.bottom)])
+    )
+    straight = run[np.abs(run[:, 0] - edge) < 0.02]
+    assert len(straight) >= 2 and straight[0, 1] < straight[-1, 1] - 10.0
+    assert run[:, 0].max() < edge + 0.02
+    assert (rim.top, rim.bottom) == pytest.approx((curved.skin.points[:, 2].max(), -12.0 + rim.top))
+
+
+def test_sides_beside_such_an_edge_come_after_it_and_need_not_keep_off_what_was_left_there() -> (
+    None
+):
+    found = operations("over")
+    assert list(found).index("overhang_rim-pocket-01") < list(found).index("leaning_side-pocket-01")
+    assert found["leaning_side-pocket-01"].choices["surface.overhang"] == 0.0
+    rim = found["overhang_rim-pocket-01"]
+    assert rim.tool.radius < 8.0 and rim.tool.corner_radius == 0.0
+    assert not any(id.startswith("overhang_rim") for id in operations("away"))
+
+
 def test_a_curved_floor_is_cut_at_a_constant_scallop_after_its_walls() -> None:
     found = list(operations("bowl"))
     order = [found.index(f"{k}-pocket-01") for k in ("rough", "leaning_side", "semi")]
@@ -120,6 +148,16 @@ def test_a_curved_floor_is_cut_at_a_constant_scallop_after_its_walls() -> None:
     assert floor.strategy == "surface.constant"
     assert set(pocket_of("bowl")[0].curved) <= set(floor.faces)
     assert not not_planned("bowl")
+
+
+def test_a_sharp_foot_of_a_curved_floor_gets_an_end_sharper_than_any_ball() -> None:
+    floors = [o for o in operations("sharp bowl").values() if o.kind == "curved_floor"]
+    *balls, last = [o.tool for o in floors]
+    assert balls and all(t.form == "ball" for t in balls)
+    assert last.form == "bull" and last.corner_radius < min(t.corner_radius for t in balls)
+    assert floors[-1].choices["surface.earlier"] == balls[-1].name
+    # In a fillet there is nothing for it.
+    assert {o.tool.form for o in operations("bowl").values() if o.kind == "curved_floor"} == {"ball"}
 
 
 def test_a_typical_plan_without_layers_refuses_leaning_walls() -> None:

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import pytest
 
+from trunnion.plan import sequence
 from trunnion.plan.sequence import OrderedOperation, ordered
 
 
@@ -49,3 +50,14 @@ def test_within_a_tool_the_nearest_comes_next():
 def test_jobs_that_wait_for_each_other_are_refused():
     with pytest.raises(ValueError, match="circle"):
         ordered([job("a", "T1", after="b"), job("b", "T1", after="a")])
+
+
+def test_many_tools_that_are_ready_at_once_are_not_tried_in_every_order(monkeypatch):
+    looks, whole = [], sequence._with_all_ready
+    monkeypatch.setattr(sequence, "_with_all_ready", lambda *args: looks.append(1) or whole(*args))
+    # Each of 14 pockets has a tool of its own, begun and ended by tools that all share: 2^14 sets of pockets may be done.
+    first = [job(f"rough-{n}", "T1") for n in range(14)]
+    own = [job(f"wall-{n}", f"W{n:02d}", 1, after=f"rough-{n}") for n in range(14)]
+    last = [job(f"floor-{n}", "T2", 2, after=f"wall-{n}") for n in range(14)]
+    assert changes(ordered([*first, *own, *last]), [*first, *own, *last]) == 15
+    assert len(looks) < 5000

@@ -14,6 +14,9 @@ SCALLOP, ALLOWANCE, BOTTOM, CELL = (
 it goes down to, and the distance of the positions at which the part's height is measured."""
 EXTENSION = "surface.extension"
 """Key of an operation's choices: how far in mm its passes run on past free rims."""
+OVERHANG = "surface.overhang"
+"""Key of an operation's choices: how thick in mm material stays on faces that hang over, which necks and shanks keep off; where it is not
+said, as much as earlier operations may leave."""
 EARLIER = "surface.earlier"
 """Key of an operation's choices: the name of the cutter that finished its faces before."""
 UPRIGHT_EARLIER = "surface.upright_earlier"

@@ -29,7 +29,7 @@ from trunnion.plan.freeform.fixtures import (
     with_fixtures,
 )
 from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
-from trunnion.plan.freeform.keys import ALLOWANCE, EXTENSION, SCALLOP, number
+from trunnion.plan.freeform.keys import ALLOWANCE, EXTENSION, OVERHANG, SCALLOP, number
 from trunnion.plan.prismatic.fixtures import Notice, kept_off
 from trunnion.plan.prismatic.keep_out import excluded
 from trunnion.progress import NO_PROGRESS, Progress
@@ -133,7 +133,8 @@ class SurfaceSpace:
         height, allowance, extension = (
             number(operation, key) for key in (SCALLOP, ALLOWANCE, EXTENSION)
         )
-        thickness = LEFTOVER * operation.data.depth
+        known = OVERHANG in operation.choices
+        thickness = number(operation, OVERHANG) if known else LEFTOVER * operation.data.depth
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if within is not None:
             skin, faces = parted_within(skin, faces, within)

@@ -11,6 +11,7 @@ from trunnion.plan.panel.freeform.finishing_tasks import (
     floor_tasks,
     side_tasks,
 )
+from trunnion.plan.panel.freeform.overhang_tasks import overhang_rim_tasks
 from trunnion.plan.panel.freeform.roughing_tasks import layer_tasks, rest_layer_tasks
 from trunnion.plan.panel.freeform.slope_tasks import slope_rough_tasks, slope_tasks
 from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
@@ -23,6 +24,7 @@ FREEFORM_TASK_MAKERS: Mapping[
     "layers": layer_tasks,
     "rest_layers": rest_layer_tasks,
     "leaning_floor": floor_tasks,
+    "overhang_rim": overhang_rim_tasks,
     "sides": side_tasks,
     "curved_semi": curved_semi_tasks,
     "curved_floor": curved_floor_tasks,

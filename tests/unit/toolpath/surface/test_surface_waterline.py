@@ -244,13 +244,13 @@ def arched(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return 1.0 - (y - 15.0) ** 2 / 225.0
 
 
-def arched_wall(n: int = 60) -> Skin:
+def arched_wall(n: int = 60, rise: float = 1.0) -> Skin:
     """Return an upright wall at x = 20, facing low x, from an arched floor up to z = 10: two triangles for each step of its foot."""
     y = np.linspace(0.0, 30.0, n + 1)
     points = np.vstack(
         [
             np.column_stack([np.full(n + 1, 20.0), y, z])
-            for z in (arched(20.0, y), np.full(n + 1, 10.0))
+            for z in (rise * arched(20.0, y), np.full(n + 1, 10.0))
         ]
     )
     a = np.arange(n)
@@ -277,4 +277,26 @@ def test_the_foot_of_an_upright_wall_is_followed_where_the_floor_rises_along_it(
     line = mine[np.argsort(mine[:, 1])]
     assert np.abs(np.interp(y, line[:, 1], line[:, 2]) - rests).max() < 0.005
     assert len(np.unique(tips[:, 2])) < 60 and len(tips) < 100
+    assert (tips[:, 2] - drive.skin.drop.drop(tips[:, :2], lower_side(tool), -9.0)).min() > -1e-3
+
+
+@pytest.mark.parametrize("rise", [1.0, -1.0])
+def test_the_foot_is_followed_where_the_flank_is_longer_than_the_wall_is_high(rise: float) -> None:
+    tool = bull(6.0, 0.5)(flute=30.0)
+
+    def bent(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return rise * arched(x, y)
+
+    floor = grid(bent, n=120, low=(0.0, -5.0), high=(20.0, 35.0), tag=3)
+    made, drive = planned(joined(arched_wall(rise=rise), floor), tool, chord=0.002)
+    tips = cut_tips(made.path)
+    rows = np.flatnonzero(made.path.mark == Mark.CUT)
+    begins, share = made.path.starts()[rows], np.linspace(0.0, 1.0, 200)[:, None, None]
+    along = (begins + share * (made.path.position[rows] - begins)).reshape(-1, 3)
+    mine = along[np.abs(along[:, 0] - 17.0) < 0.01]
+    y = np.linspace(2.0, 28.0, 45)
+    rests = drive.skin.drop.drop(np.column_stack([np.full(45, 16.99), y]), lower_side(tool), -9.0)
+    # Everywhere along the wall there is a pass at its foot, which rises by up to 0.06 mm over what is looked at to either side.
+    lowest = [float(mine[np.abs(mine[:, 1] - at) < 0.5, 2].min()) for at in y]
+    assert np.abs(lowest - rests).max() < 0.13
     assert (tips[:, 2] - drive.skin.drop.drop(tips[:, :2], lower_side(tool), -9.0)).min() > -1e-3

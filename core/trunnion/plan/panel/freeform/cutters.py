@@ -11,7 +11,14 @@ from trunnion.findings import Finding, error, face_tags, warning
 from trunnion.geometry.arrays import Bools
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
-from trunnion.plan.freeform.cutters.choice import AreaCutters, by_corner, by_diameter, cutter_for
+from trunnion.plan.freeform.cutters.choice import (
+    NEGLIGIBLE,
+    AreaCutters,
+    CutterStep,
+    by_corner,
+    by_diameter,
+    cutter_for,
+)
 from trunnion.plan.freeform.estimate.scallop import level_step, stepover_on_plane
 from trunnion.plan.freeform.reach import AreaSamples, leans, samples_on
 from trunnion.plan.panel.freeform.planning import FreeformPlanning
@@ -70,6 +77,42 @@ def balls(state: PanelPlanState) -> list[Tool]:
     """Return the balls for the material that are no larger than is wanted."""
     tools = state.shop.tools_for(state.material.iso_group, "surface")
     return [t for t in tools if t.form == "ball" and t.diameter <= state.settings.largest]
+
+
+def sharper_steps(
+    state: PanelPlanState,
+    known: FreeformPlanning,
+    pocket: FreeformPocket,
+    samples: AreaSamples,
+    steps: Sequence[CutterStep],
+) -> tuple[CutterStep, ...]:
+    """Return the step of an end mill with a sharper corner than any ball for what all balls leave at a sharp foot of a curved floor; none
+    where it reaches hardly anything more."""
+    last = steps[-1].tool
+    missed = ~np.logical_or.reduce([step.rows for step in steps])
+    deep = pocket.top - pocket.bottom + state.settings.reach_clearance
+    sharper = [
+        t
+        for t in mills_and_balls(state, 0.0, deep)
+        if t.form == "bull" and 0.0 < t.corner_radius < last.corner_radius
+    ]
+    if not missed.any() or not sharper:
+        return ()
+    found = cutter_for(
+        known.curved,
+        samples.of(missed),
+        sharper,
+        known.settings.share,
+        state.settings.reach_clearance,
+        None,
+        state.progress,
+        by_corner,
+    )
+    if found.tool is None or found.reached.sum() <= NEGLIGIBLE * len(samples):
+        return ()
+    rows = missed.copy()
+    rows[missed] = found.reached
+    return (CutterStep(tool=found.tool, rows=rows, earlier=last),)
 
 
 def side_cutters(state: PanelPlanState, pocket: FreeformPocket) -> list[Tool]:

@@ -1,5 +1,5 @@
-"""Drives of operations on pockets with leaning walls or curved floors: layers and level floors, and the share that a pocket has of faces
-that run on into its neighbours."""
+"""Drives of operations on pockets with leaning walls or curved floors: layers, level floors, rims of what hangs over these, and the share
+that a pocket has of faces that run on into its neighbours."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ from trunnion.plan.panel.freeform.pocket import FreeformPocket
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.progress import Progress
+
+OVERHANG_RIM = "overhang_rim"
+"""The kind of operation that goes along the upper edges of walls that lean over."""
 
 
 def pocket_of(
@@ -36,7 +39,8 @@ def pocket_of(
 def freeform_drive(
     operation: Operation, pocket: FreeformPocket, scene: Scene, progress: Progress
 ) -> PlaneDrive:
-    """Return the drive of a plane operation on a freeform pocket: layers, or its level floors; raise `Refused` for other kinds."""
+    """Return the drive of a plane operation on a freeform pocket: layers, its level floors, the rims of what hangs over these; raise
+    `Refused` for other kinds."""
     if operation.kind == "rough":
         return _layers(operation, pocket, scene, progress)
     if operation.kind == "leaning_floor":
@@ -46,6 +50,16 @@ def freeform_drive(
             kind=operation.kind,
             levels=levels,
             floors=floors,
+            fillet=pocket.fillet,
+            stock_top=pocket.space.top,
+            faces=operation.faces,
+        )
+    if operation.kind == OVERHANG_RIM:
+        return PlaneDrive(
+            feature=operation.feature,
+            kind=operation.kind,
+            levels=pocket.floors()[1],
+            walls=pocket.overhang_rims(),
             fillet=pocket.fillet,
             stock_top=pocket.space.top,
             faces=operation.faces,

@@ -16,7 +16,7 @@ from trunnion.plan.freeform.cutters.choice import (
 )
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
-from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, SCALLOP
+from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, OVERHANG, SCALLOP
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.panel.freeform.cutters import (
     LAP,
@@ -26,6 +26,7 @@ from trunnion.plan.panel.freeform.cutters import (
     level_time,
     no_cutter,
     report_unreached,
+    sharper_steps,
     side_cutters,
     tool_change,
 )
@@ -53,7 +54,7 @@ FLOOR_WIDTH = 0.6
 """Distance of a floor's passes over the width of the cutter's flat."""
 FOOT = 2.0
 """degrees: at the foot of sides over level floors, what leans less from level is the floor's; a fillet ends in it."""
-HANGING = 2.0
+BESIDE_OVERHANG = 2.0
 """Times what layers leave: beside walls that lean over it stands as high as the pocket is deep, thicker in corners."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
@@ -121,9 +122,13 @@ def side_tasks(
             continue
         left = pocket.layer_area().remaining(settings.cell, state.settings.floor_allowance)
         left += settings.step
-        if pocket.hang > 0.0:
+        hanging: dict[str, Value] = {}
+        if pocket.feature.id in known.rims:
+            # Outside of the rims of what leans over nothing stands any more, and no neck comes inside of them.
+            hanging = {OVERHANG: 0.0}
+        elif pocket.hang > 0.0:
             # What stays at a wall that leans over is nowhere finished: necks keep off more than elsewhere.
-            left *= HANGING
+            left *= BESIDE_OVERHANG
         shallowest = max(settings.steep - LAP, FOOT) if pocket.curved else FOOT
         steps = with_rounder_between(
             cutters,
@@ -136,6 +141,7 @@ def side_tasks(
                 SCALLOP: settings.scallop,
                 ALLOWANCE: 0.0,
                 f"{SIDES_STRATEGY}.shallowest": shallowest,
+                **hanging,
                 **chord_choices(SIDES_STRATEGY, settings.scallop),
                 **after_earlier(SIDES_STRATEGY, step.earlier),
             }
@@ -183,6 +189,8 @@ def _on_curved_floors(
             partial(area_rate, state, height=settings.scallop),
             tool_change(state),
         )
+        if not semi:
+            steps = (*steps, *sharper_steps(state, known, pocket, samples, steps))
         # Semi-finishing makes the load even where the first cutter goes: what that leaves is little, and none of its rests are.
         for n, step in enumerate(steps[:1] if semi else steps):
             is_after_layers = semi or step.earlier is not None or settings.semi_allowance <= 0.0

@@ -19,9 +19,15 @@ from trunnion.model.feature import Feature
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.plan.freeform.roughing.layers import LayerArea
 from trunnion.plan.freeform.space import AROUND, SurfaceSpace
-from trunnion.plan.prismatic.drive import DriveLevel, Floor
+from trunnion.plan.prismatic.drive import DriveLevel, Floor, WallGuide
 from trunnion.plan.prismatic.lean import SIDES, curved_floors, level_floors
-from trunnion.plan.prismatic.regions import SetupSpace, floor_fillet, number
+from trunnion.plan.prismatic.regions import (
+    SetupSpace,
+    floor_fillet,
+    number,
+    on_rim,
+    runs,
+)
 
 MARGIN = 1.0
 """mm that the map of a pocket goes on past its rim."""
@@ -135,6 +141,26 @@ class FreeformPocket:
         if not self._floors:
             self._floors.append(self._found_floors())
         return self._floors[0]
+
+    def overhang_rims(self) -> tuple[WallGuide, ...]:
+        """Return the upper edges of walls that lean over level floors, as seen from above: what stands outside of them down to the floor is
+        cut by a flank that goes along them, like a wall's."""
+        if self.hang <= 0.0:
+            return ()
+        found = []
+        for level in self.floors()[1]:
+            z = level.bottom + tolerance.OFF_PLANE
+            hanging = self.space.hanging_over(z, level.wanted)
+            if not hanging:
+                continue
+            material = self.space.section(z)
+            for curve in level.boundary.curves():
+                rim = on_rim(curve, hanging) & ~on_rim(curve, material)
+                found += [
+                    WallGuide(curve=run, top=self.top, bottom=level.bottom, fillet=0.0, faces=())
+                    for run in runs(curve, rim)
+                ]
+        return tuple(found)
 
     def _found_floors(self) -> tuple[tuple[Floor, ...], tuple[DriveLevel, ...]]:
         space, found = self.space, []

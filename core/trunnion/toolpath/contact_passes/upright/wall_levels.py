@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -33,8 +33,23 @@ OPEN = 100.0
 """mm of feed that leads and links of a level cost which is open because upright walls have levels of their own."""
 
 
-def lowest_tips(slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Floats:
-    """Return how low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it."""
+@dataclass(frozen=True, slots=True, eq=False)
+class WallFoot:
+    """How low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it; and the height
+    of the highest such foot, -inf where there is none."""
+
+    low: Floats
+    highest_foot: float
+
+    def some(self, which: Bools, highest_foot: float) -> WallFoot:
+        """Return those of some of the triangles, whose highest foot is given."""
+        return WallFoot(self.low[which], highest_foot)
+
+
+def lowest_tips(
+    slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress
+) -> WallFoot:
+    """Return how low the tip comes on each triangle, and where the foot of upright walls is highest."""
     low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
     upright = np.flatnonzero(slopes.normal[:, 2] <= -UPWARD)
     shifted = (slopes.tips[upright] + OFF * slopes.normal[upright, None])[:, :, :2].reshape(-1, 2)
@@ -51,13 +66,15 @@ def lowest_tips(slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: 
         float(drive.low[2]) - tool.flute_length,
         progress,
     )
-    over = over[of.ravel()] + drive.allowance
-    stopped = over.reshape(-1, 3).min(axis=1) + FOOT
+    stops = (over[of.ravel()] + drive.allowance + FOOT).reshape(-1, 3)
+    stopped = stops.min(axis=1)
     # Where it is stopped over the whole triangle, the foot is another one's.
     low[upright] = np.where(
         stopped < high[upright], np.maximum(low[upright], stopped), high[upright]
     )
-    return low
+    # Where another wall stands in its way it is stopped by the top of that one, which is no foot.
+    feet = stops[stops < high[upright, None]]
+    return WallFoot(low, float(feet.max(initial=-np.inf)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,7 +86,7 @@ class WallLevels:
 
 
 def with_levels(
-    slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float
+    slopes: FacetSlopes, feet: WallFoot, tool: Tool, height: float, step: float
 ) -> list[WallLevels]:
     """Return the triangles with their levels: those of leaning faces and those of upright ones on levels of their own where that saves
     more than the passes cost that end where the two meet.
@@ -82,8 +99,8 @@ def with_levels(
     if step > 0.0 or upright.all() or not upright.any():
         return [together]
     apart = [
-        WallLevels(some, _levels(some, feet[which], tool, height, step))
-        for which in (upright, ~upright)
+        WallLevels(some, _levels(some, feet.some(which, highest), tool, height, step))
+        for which, highest in ((upright, feet.highest_foot), (~upright, -np.inf))
         for some in (slopes.some(which),)
     ]
     ends = OPEN * len(apart[1].levels)
@@ -101,15 +118,15 @@ def _run(walls: WallLevels) -> float:
     return float((walls.slopes.area * side / np.diff(levels)[row - 1]).sum())
 
 
-def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: float) -> Floats:
-    """Return the heights of the tip (p,) upwards, from the lowest position that is touched; `feet` is how low the tip comes (m,). Higher
-    feet have passes of their own (`wall_foot`)."""
+def _levels(slopes: FacetSlopes, feet: WallFoot, tool: Tool, height: float, step: float) -> Floats:
+    """Return the heights of the tip (p,) upwards, from the lowest position that is touched. Feet that lie higher have passes of their own,
+    brought down from the level above them (`wall_foot`): there is one over the highest foot."""
     low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
     spacing = np.full(len(low), step) if step > 0.0 else level_spacing(slopes, tool, height)
     spacing = np.minimum(
         spacing, FLANK * max(tool.flute_length - tool.corner_radius, tool.corner_radius)
     )
-    levels = marched(low, high, spacing, float(feet.min()), float(high.max()))
+    levels = marched(low, high, spacing, float(feet.low.min()), float(high.max()))
     if len(levels) > 1:
         if not (slopes.normal[high > levels[-2], 2] > -UPWARD).any():
             # The flank of the level below goes up an upright wall to its top.
@@ -117,4 +134,7 @@ def _levels(slopes: FacetSlopes, feet: Floats, tool: Tool, height: float, step: 
         else:
             # At its own height the last one would only pass over the top.
             levels[-1] -= BELOW_TOP * (levels[-1] - levels[-2])
+    if feet.highest_foot > levels[-1] + FOOT:
+        # A flank that is longer than the wall is high needs no second level, but from the lowest foot the floor keeps it off the others.
+        levels = np.append(levels, feet.highest_foot)
     return levels
