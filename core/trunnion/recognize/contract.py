@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol, runtime_checkable
 
 from trunnion import registry
@@ -171,14 +171,27 @@ class Bounding(Protocol):
 
 
 def feature_kinds() -> dict[str, FeatureKind]:
-    """Return the kinds of features of all registered families by name; raise `BadCall` where two declare one differently."""
+    """Return the kinds of features of all registered families by name; raise `BadCall` where two declare one differently.
+
+    Families share kinds such as holes: words and colours must agree. What only one says of a kind, the pocket paper's model or sizes along
+    the axes of the file, counts for all.
+    """
     found: dict[str, FeatureKind] = {}
     for family in registry.names(FAMILIES):
         for kind in registry.get(FAMILIES, family).kinds:
-            if found.setdefault(kind.name, kind) != kind:
+            before = found.setdefault(kind.name, kind)
+            along = (
+                *before.along_axes,
+                *(s for s in kind.along_axes if s not in before.along_axes),
+            )
+            shared = {"pocket": before.pocket or kind.pocket, "along_axes": along}
+            if replace(before, **shared) != replace(kind, **shared) or (
+                before.pocket and kind.pocket and before.pocket is not kind.pocket
+            ):
                 raise BadCall(
                     f"the family {family} declares the kind of features {kind.name} otherwise than another family: rename it"
                 )
+            found[kind.name] = replace(before, **shared)
     return found
 
 
