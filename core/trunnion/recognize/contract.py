@@ -180,19 +180,22 @@ def feature_kinds() -> dict[str, FeatureKind]:
     for family in registry.names(FAMILIES):
         for kind in registry.get(FAMILIES, family).kinds:
             before = found.setdefault(kind.name, kind)
-            along = (
-                *before.along_axes,
-                *(s for s in kind.along_axes if s not in before.along_axes),
-            )
-            shared = {"pocket": before.pocket or kind.pocket, "along_axes": along}
-            if replace(before, **shared) != replace(kind, **shared) or (
-                before.pocket and kind.pocket and before.pocket is not kind.pocket
-            ):
+            merged = _merged(before, kind)
+            if merged is None:
                 raise BadCall(
                     f"the family {family} declares the kind of features {kind.name} otherwise than another family: rename it"
                 )
-            found[kind.name] = replace(before, **shared)
+            found[kind.name] = merged
     return found
+
+
+def _merged(a: FeatureKind, b: FeatureKind) -> FeatureKind | None:
+    """Return what two families say of one kind together, None where they differ."""
+    if a.pocket and b.pocket and a.pocket is not b.pocket:
+        return None
+    along = (*a.along_axes, *(s for s in b.along_axes if s not in a.along_axes))
+    one, other = (replace(k, pocket=a.pocket or b.pocket, along_axes=along) for k in (a, b))
+    return one if one == other else None
 
 
 def sharing_families() -> tuple[str, ...]:

@@ -59,7 +59,8 @@ class CasingFamily:
             faces = _in_frame(graph, frame, holes)
         progress.at(0.8, "naming features")
         made = progress.aside(lambda _: made_features(faces, bosses, holes, frame, graph))
-        left = tuple(r for r in faces.present if r not in {t - 1 for f in made for t in f.tags})
+        held = {tag - 1 for feature in made for tag in feature.tags}
+        left = tuple(r for r in faces.present if r not in held)
         return Recognition(
             family=self.name,
             frame=frame,

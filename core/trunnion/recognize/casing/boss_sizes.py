@@ -20,6 +20,8 @@ from trunnion.recognize.grow import samples
 from trunnion.tolerance import ANGLE, SLIVER
 from trunnion.units import degrees, rounded
 
+ROUND = ("cylinder", "torus")
+"""Surfaces of fillets that say their radius."""
 EQUAL = 0.01
 """mm: radii and lengths of one outline that differ by less are equal, as drawings go."""
 
@@ -27,10 +29,20 @@ EQUAL = 0.01
 def with_fillets(
     faces: CasingFaces, boss: BossFaces, outline: BossOutline, meridian: Meridian
 ) -> BossOutline:
-    """Return an outline whose pieces say the radius of the fillet at their foot."""
-    radius = (
-        {s: fillet_radius(faces, boss, s, meridian) for s in boss.sides} if boss.fillets else {}
-    )
+    """Return an outline whose pieces say the radius of the fillet at their foot: that of its cylinders and tori, where it has any, else
+    what fits side and ground (corners are written as splines that are a micrometre off)."""
+    graph = faces.graph
+    if not boss.fillets:
+        return outline
+    radius = {s: fillet_radius(faces, boss, s, meridian) for s in boss.sides}
+    exact = [
+        float(graph.radius[f] if graph.surface[f] == "cylinder" else graph.minor[f])
+        for f in boss.fillets
+        if graph.surface[f] in ROUND
+    ]
+    if exact:
+        common = rounded(float(np.median(exact)))
+        radius = {s: common if r else 0.0 for s, r in radius.items()}
     return replace(
         outline,
         pieces=tuple(replace(p, fillet=radius.get(p.side, 0.0)) for p in outline.pieces),

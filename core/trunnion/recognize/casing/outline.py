@@ -50,6 +50,11 @@ class OutlinePiece:
             else abs(self.turn) * self.radius
         )
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is a whole circle."""
+        return abs(self.turn) > 2.0 * np.pi - ANGLE
+
     def at(self, share: Floats) -> Floats:
         """Return the points (k, 2) at shares (k,) of its length."""
         share = np.asarray(share, dtype=float)
@@ -255,7 +260,7 @@ def _centred(outline: BossOutline) -> BossOutline:
         return outline
     share = np.linspace(0.0, 1.0, 33)
     points = np.vstack([p.at(share) for p in outline.pieces])
-    whole = [p for p in outline.pieces if abs(p.turn) > 2.0 * np.pi - ANGLE]
+    whole = [p for p in outline.pieces if p.is_whole]
     middle = (
         whole[0].centre
         if len(outline.pieces) == 1 and whole
