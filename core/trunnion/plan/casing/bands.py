@@ -36,7 +36,8 @@ class BossBox:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gap:
-    """A free gap of a band: from where boss `after` ends to where boss `before` begins, angles in radians, the first from 0 to a whole turn.
+    """A free gap of a band: from where boss `after` ends to where boss `before` begins, angles in radians,
+    counted on from that boss's own beginning, which is from 0 to a whole turn.
 
     `arc` is its length at the band's mean radius, `needed` what it must have to be turned, mm.
     """
@@ -132,11 +133,11 @@ def free_gaps(boxes: Sequence[BossBox], radius: float, needed: Needed) -> tuple[
     spans = [(low, high, boss, boss) for low, high, boss in turned]
     # Once more round, so that what goes on over zero is merged with what it reaches there.
     spans += [(low + FULL, high + FULL, first, last) for low, high, first, last in spans]
-    reach, last = spans[0][1], spans[0][3]
+    reach, last, lap = spans[0][1], spans[0][3], 0.0
     gaps: list[Gap] = []
     for low, high, first, own in spans[1:]:
         if low > reach + SAME_HEIGHT / radius:
-            begin = reach % FULL
+            begin = reach - lap
             gaps.append(
                 Gap(
                     after=last,
@@ -147,8 +148,8 @@ def free_gaps(boxes: Sequence[BossBox], radius: float, needed: Needed) -> tuple[
                 )
             )
         if high > reach:
-            reach, last = high, own
+            reach, last, lap = high, own, FULL if low >= FULL else 0.0
     distinct: dict[tuple[str, str, int], Gap] = {}
     for gap in gaps:
-        distinct.setdefault((gap.after, gap.before, round(gap.theta[0] * 1e6)), gap)
+        distinct.setdefault((gap.after, gap.before, round(gap.theta[0] % FULL * 1e6)), gap)
     return tuple(sorted(distinct.values(), key=lambda g: g.theta))

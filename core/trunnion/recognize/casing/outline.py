@@ -136,8 +136,8 @@ def _direction(graph: FaceGraph, boss: BossFaces, normal: Floats) -> Floats:
 
 
 def _rim(faces: CasingFaces, boss: BossFaces, z: Floats) -> list[tuple[int, int, float]]:
-    """Return the edges of the rim with the rows of the sides below them (-1 where something higher cuts the boss), each with the sense in
-    which it runs counter-clockwise round the boss: +1 as its points do."""
+    """Return the edges of the rim with the rows of the sides below them, each with the sense in which it runs counter-clockwise round the
+    boss: +1 as its points do. Where a higher boss rises flush, its side counts; where a ring rib cuts the boss, the row is -1."""
     graph = faces.graph
     caps = set(boss.top) | {
         s for s in boss.sides if not faces.stands_on[s] and _is_cap(graph, s, z)
@@ -149,7 +149,8 @@ def _rim(faces: CasingFaces, boss: BossFaces, z: Floats) -> list[tuple[int, int,
             if other in caps or other in faces.holes:
                 continue
             cut = bool(graph.convexity[edge] == CONCAVE) or other not in boss.sides
-            found.append((edge, -1 if cut else other, _sense(graph, edge, other, cut, z)))
+            row = -1 if cut and faces.runs_round(other) else other
+            found.append((edge, row, _sense(graph, edge, other, cut, z)))
     return found
 
 
