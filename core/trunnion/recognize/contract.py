@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol, runtime_checkable
 
 from trunnion import registry
@@ -171,15 +171,31 @@ class Bounding(Protocol):
 
 
 def feature_kinds() -> dict[str, FeatureKind]:
-    """Return the kinds of features of all registered families by name; raise `BadCall` where two declare one differently."""
+    """Return the kinds of features of all registered families by name; raise `BadCall` where two declare one differently.
+
+    Families share kinds such as holes: words and colours must agree. What only one says of a kind, the pocket paper's model or sizes along
+    the axes of the file, counts for all.
+    """
     found: dict[str, FeatureKind] = {}
     for family in registry.names(FAMILIES):
         for kind in registry.get(FAMILIES, family).kinds:
-            if found.setdefault(kind.name, kind) != kind:
+            before = found.setdefault(kind.name, kind)
+            merged = _merged(before, kind)
+            if merged is None:
                 raise BadCall(
                     f"the family {family} declares the kind of features {kind.name} otherwise than another family: rename it"
                 )
+            found[kind.name] = merged
     return found
+
+
+def _merged(a: FeatureKind, b: FeatureKind) -> FeatureKind | None:
+    """Return what two families say of one kind together, None where they differ."""
+    if a.pocket and b.pocket and a.pocket is not b.pocket:
+        return None
+    along = (*a.along_axes, *(s for s in b.along_axes if s not in a.along_axes))
+    one, other = (replace(k, pocket=a.pocket or b.pocket, along_axes=along) for k in (a, b))
+    return one if one == other else None
 
 
 def sharing_families() -> tuple[str, ...]:

@@ -57,8 +57,9 @@ def main_axis(graph: FaceGraph) -> RevolutionAxis | None:
 
 
 def of_revolution(graph: FaceGraph, axis: RevolutionAxis) -> Bools:
-    """Return which faces (n,) are of revolution about an axis: planes across it, cylinders, cones and any other surface whose normals
-    lie in the planes through it."""
+    """Return which faces (n,) are of revolution about an axis: planes across it, cylinders, cones and tori about it, and any other
+    surface whose normals lie in the planes through it. The normals of a small flat pad far out leave these planes by as little as those
+    of a fitted surface: what a surface is known to be comes first."""
     away = axis.away(graph.sample_point)
     # The normal's line passes the axis at (r x n) . d over the sine of their angle; r / |r| makes it the sine of leaving the meridian.
     moment = np.abs(np.cross(away, graph.sample_normal) @ axis.direction)
@@ -67,7 +68,18 @@ def of_revolution(graph: FaceGraph, axis: RevolutionAxis) -> Bools:
     strange[graph.sample_face[outside]] = True
     sampled = np.zeros(len(graph), dtype=bool)
     sampled[graph.sample_face] = True
-    return np.asarray(sampled & ~strange & (graph.area > 0.0))
+    return np.asarray(sampled & ~strange & (graph.area > 0.0) & ~_of_another_axis(graph, axis))
+
+
+def _of_another_axis(graph: FaceGraph, axis: RevolutionAxis) -> Bools:
+    """Return which faces (n,) are planes that are not across an axis, or cylinders, cones and tori about another one."""
+    surface = np.array(graph.surface)
+    flat = (surface == "plane") & (np.abs(graph.normal @ axis.direction) < np.cos(OUT_OF_MERIDIAN))
+    own = np.isin(surface, ROUND[:3]) & np.isfinite(graph.axis).all(axis=1)
+    off = np.linalg.norm(axis.away(np.where(own[:, None], graph.axis_point, 0.0)), axis=1)
+    askew = np.abs(np.where(own[:, None], graph.axis, axis.direction) @ axis.direction)
+    near = SAME_LINE * reach(graph)
+    return np.asarray(flat | (own & ((off > near) | (askew < np.cos(OUT_OF_MERIDIAN)))))
 
 
 def _lines(graph: FaceGraph) -> list[RevolutionAxis]:

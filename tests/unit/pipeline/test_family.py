@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,7 +14,7 @@ from lxml import etree
 import programs
 import round_parts
 import samples
-from trunnion.cli.main import BAD, DONE, PROBLEMS, main
+from trunnion.cli.main import BAD, DONE, main
 from trunnion.findings import BadInput, Severity
 from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
 from trunnion.model.session import Session
@@ -156,57 +156,38 @@ def shell() -> Path:
     return samples.written(round_parts.shell(4).shape, name="shell")
 
 
-def test_program_refuses_a_casing_in_one_line_before_anything_is_planned(
-    shell, tmp_path, capsys
-) -> None:
+def test_program_refuses_a_family_without_a_planner_in_one_line(shell, tmp_path, capsys) -> None:
     assert main(["program", str(shell), "-o", str(tmp_path / "out")]) == BAD
     said = capsys.readouterr().err
-    assert (
-        said.startswith("trunnion: shell.step: the part looks like a casing (1.00): ")
-        and len(said.splitlines()) == 1
-    )
-    assert said.endswith(
-        "choose recognize.family = panel or surface to go on with one of the families there are\n"
-    )
-    assert not (tmp_path / "out").exists()
+    assert "parts of the family casing are segmented and measured, but not planned yet" in said
+    assert said.startswith("trunnion: ") and len(said.splitlines()) == 1
+
+
+def test_recognize_says_what_it_takes_a_casing_for_and_finds_its_features(shell, capsys) -> None:
+    assert main(["recognize", str(shell)]) == DONE
+    assert capsys.readouterr().out.startswith("taken for a casing (1.00): ")
+    assert main(["recognize", str(shell), "--json"]) == DONE
+    data = json.loads(capsys.readouterr().out)
+    assert data["family"] == "casing" and data["unexplained"]["faces"] == []
+    kinds = {f["kind"] for f in data["features"]}
+    assert {"hole", "profile"} <= kinds <= {"boss", "hole", "pocket", "profile"}
+
+
+def test_a_casing_is_recognised_as_the_family_that_a_person_chooses(shell, capsys) -> None:
+    assert main(["recognize", str(shell), "--set", "recognize.family=surface"]) == DONE
+    assert capsys.readouterr().out.startswith("taken for a part of curved surfaces ")
+    engine = Engine()
+    session = engine.with_choices(engine.open(shell), {"recognize.family": "surface"})
+    assert engine.run(session, "blank").blank is not None
 
 
 @pytest.mark.parametrize("step", ["size", "blank", "route"])
 def test_every_step_after_recognition_refuses_while_the_kind_is_in_doubt(shell, step: str) -> None:
     engine = Engine()
-    with pytest.raises(BadInput, match="choose recognize.family = panel or surface"):
-        engine.run(engine.open(shell), step)
-
-
-def test_recognize_says_what_it_takes_a_casing_for_and_exits_with_1(shell, capsys) -> None:
-    assert main(["recognize", str(shell)]) == PROBLEMS
-    said = capsys.readouterr()
-    assert said.out.startswith("taken for a casing (1.00): ") and "100.00 % of the area" in said.out
-    assert "error recognize.no-family: the part looks like a casing" in said.err
-    assert main(["recognize", str(shell), "--json"]) == PROBLEMS
-    data = json.loads(capsys.readouterr().out)
-    assert (
-        data["family"] == "casing"
-        and data["features"] == []
-        and data["unexplained"]["area_share"] == 1.0
-    )
-    assert (
-        data["taken_for"]["kind"] == "casing"
-        and data["taken_for"]["score"] > 0.95
-        and "bore" in data["taken_for"]["reason"]
-    )
-
-
-def test_a_casing_is_recognised_as_the_family_that_a_person_chooses(shell, capsys) -> None:
-    assert main(["recognize", str(shell), "--set", "recognize.family=surface"]) == DONE
-    said = capsys.readouterr()
-    assert (
-        said.out.startswith("taken for a part of curved surfaces ")
-        and "warning recognize.no-family" in said.err
-    )
-    engine = Engine()
-    session = engine.with_choices(engine.open(shell), {"recognize.family": "surface"})
-    assert engine.run(session, "blank").blank is not None
+    session = engine.run(engine.open(shell), "recognize")
+    doubtful = replace(session, recognition=replace(session.recognition, doubt="choose a family"))
+    with pytest.raises(BadInput, match="choose a family"):
+        engine.run(doubtful, step)
 
 
 def test_a_panel_is_told_as_one(sample_panel, capsys) -> None:
@@ -225,8 +206,6 @@ DOUBTED = TakenFor(kind="casing", noun="a casing", score=0.875, reason="96 % of 
 
 
 def test_features_xml_and_the_project_keep_what_a_part_was_taken_for(tmp_path) -> None:
-    from dataclasses import replace
-
     found = replace(programs.recognition(), taken_for=DOUBTED, doubt="no family: choose one")
     root = etree.fromstring(features_xml(found, programs.part_info()))
     taken = root.find("taken-for")

@@ -17,7 +17,7 @@ from shaped_parts import bowl
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.pipeline.planning.family import Rated, ratings
-from trunnion.recognize.casing.suitability import CasingKind
+from trunnion.recognize.casing import CasingFamily
 from trunnion.recognize.contract import Suitability
 from trunnion.recognize.impeller.suitability import ImpellerKind
 from trunnion.recognize.panel import PanelFamily
@@ -51,7 +51,7 @@ def test_a_wheel_with_twisted_blades_is_an_impeller(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_a_thin_shell_with_bosses_is_a_casing(seed: int) -> None:
     found = best(graph_of(seed, round_parts.shell)[0])
-    assert (found.name, found.served) == ("casing", False)
+    assert (found.name, found.served) == ("casing", True)
     assert found.suits.score > 0.95 and "round a bore of" in found.suits.reason
 
 
@@ -81,7 +81,7 @@ def test_a_panel_and_a_plain_block_are_panels() -> None:
 def test_a_part_without_a_round_edge_is_neither_wheel_nor_shell() -> None:
     graph = terrace((0, 10, 90, 100), (0, 10, 50, 60), [[40] * 3, [40, 8, 40], [40] * 3]).graph()
     assert main_axis(graph) is None
-    assert [k.suits(graph).score for k in (ImpellerKind(), CasingKind())] == [0.0, 0.0]
+    assert [k.suits(graph).score for k in (ImpellerKind(), CasingFamily())] == [0.0, 0.0]
 
 
 def test_faces_that_enclose_no_material_are_only_grouped() -> None:
@@ -126,7 +126,7 @@ def test_a_random_curved_plate_is_a_part_of_curved_surfaces_by_far(seed: int, su
     assert PanelFamily().suits(graph).score < 0.8
 
 
-@pytest.mark.parametrize("kind", [ImpellerKind(), CasingKind(), PanelFamily(), SurfaceFamily()])
+@pytest.mark.parametrize("kind", [ImpellerKind(), CasingFamily(), PanelFamily(), SurfaceFamily()])
 @pytest.mark.parametrize("make", [round_parts.wheel, round_parts.shell])
 def test_a_kind_does_not_depend_on_place_and_size(kind, make) -> None:
     still, _ = graph_of(0, make)

@@ -21,35 +21,29 @@ ON_WALL = 0.1
 """Share of the area up to which faces that hang together and are not of revolution are a boss, a hole or a pocket on the wall."""
 
 
-class CasingKind:
-    """Engine casings and other shells of revolution, turned first and milled between their bosses."""
-
-    name = "casing"
-    noun = "a casing"
-
-    def suits(self, graph: FaceGraph) -> Suitability:
-        """Return the share of the part's area in faces of revolution about its main axis and in what stands on them."""
-        axis = main_axis(graph)
-        turned = of_revolution(graph, axis) if axis else np.zeros(len(graph), dtype=bool)
-        if axis is None or not turned.any():
-            return Suitability(
-                score=0.0, explained=0.0, reason="no face is of revolution about an axis"
-            )
-        whole = float(graph.area.sum())
-        explained = min(1.0, float(graph.area[turned | _on_wall(graph, turned)].sum()) / whole)
-        sides, bore = _wall(graph, axis, turned)
-        if not sides:
-            return Suitability(score=0.0, explained=explained, reason="no wall runs round an axis")
-        thickness = _thickness(graph)
-        score = explained * min(1.0, sides / whole / ENOUGH) * min(1.0, THIN * bore / thickness)
+def suitability(graph: FaceGraph) -> Suitability:
+    """Return the share of the part's area in faces of revolution about its main axis and in what stands on them."""
+    axis = main_axis(graph)
+    turned = of_revolution(graph, axis) if axis else np.zeros(len(graph), dtype=bool)
+    if axis is None or not turned.any():
         return Suitability(
-            score=score,
-            explained=explained,
-            reason=(
-                f"{percent(float(graph.area[turned].sum()) / whole)} of the area is of revolution about one axis, {percent(sides / whole)} "
-                f"the two sides of a wall about {thickness:.3g} mm thick round a bore of {2.0 * bore:.3g} mm"
-            ),
+            score=0.0, explained=0.0, reason="no face is of revolution about an axis"
         )
+    whole = float(graph.area.sum())
+    explained = min(1.0, float(graph.area[turned | _on_wall(graph, turned)].sum()) / whole)
+    sides, bore = _wall(graph, axis, turned)
+    if not sides:
+        return Suitability(score=0.0, explained=explained, reason="no wall runs round an axis")
+    thickness = _thickness(graph)
+    score = explained * min(1.0, sides / whole / ENOUGH) * min(1.0, THIN * bore / thickness)
+    return Suitability(
+        score=score,
+        explained=explained,
+        reason=(
+            f"{percent(float(graph.area[turned].sum()) / whole)} of the area is of revolution about one axis, {percent(sides / whole)} "
+            f"the two sides of a wall about {thickness:.3g} mm thick round a bore of {2.0 * bore:.3g} mm"
+        ),
+    )
 
 
 def _wall(graph: FaceGraph, axis: RevolutionAxis, turned: Bools) -> tuple[float, float]:

@@ -1,0 +1,120 @@
+"""The bottoms of a casing with the bosses that stand on them, made of its features and its face graph."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from trunnion.findings import BadInput
+from trunnion.geometry.facegraph import CONVEX, FaceGraph
+from trunnion.model.feature import Feature, Recognition
+from trunnion.recognize.casing.boss_sizes import with_fillets
+from trunnion.recognize.casing.bosses import BossFaces
+from trunnion.recognize.casing.faces import CasingFaces
+from trunnion.recognize.casing.foot import FootBounds, bounds
+from trunnion.recognize.casing.frame import turned_faces
+from trunnion.recognize.casing.kinds import BOSS, BOTTOM, HOLE, POCKET, ROOT_FILLET, SIDE, TOP
+from trunnion.recognize.casing.meridian import Meridian
+from trunnion.recognize.casing.outline import BossOutline, boss_outline
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class StandingBoss:
+    """A boss with its outline (pieces say their fillets) and its height over the ground (mm), in the casing's frame."""
+
+    feature: Feature
+    outline: BossOutline
+    height: float
+
+    @property
+    def id(self) -> str:
+        """The feature's name."""
+        return self.feature.id
+
+    def bounds(self, meridian: Meridian, toe: bool) -> FootBounds:
+        """Return the bounds of its foot on ground, with the toe of its fillet or without."""
+        return bounds(self.outline, meridian, toe)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class CasingBottom:
+    """A pocket's bottom: its meridian, the bosses that stand on it or in a recess of it, and whether it runs round the casing."""
+
+    pocket: Feature
+    meridian: Meridian
+    bosses: tuple[StandingBoss, ...]
+    full_circle: bool
+    recess_of: str = ""
+
+
+def casing_faces(found: Recognition, graph: FaceGraph) -> CasingFaces:
+    """Return a casing's faces in its frame as recognition saw them."""
+    return CasingFaces(
+        graph=graph.in_frame(found.frame),
+        turned=turned_faces(graph, found.frame),
+        holes=frozenset(t - 1 for f in found.of_kind(HOLE) for t in f.tags),
+    )
+
+
+def casing_bottoms(found: Recognition, graph: FaceGraph) -> tuple[CasingBottom, ...]:
+    """Return the bottoms of all pockets; raise `BadInput` for a part that has none."""
+    faces = casing_faces(found, graph)
+    pockets = [p for p in found.of_kind(POCKET) if p.with_role(BOTTOM)]
+    if not pockets:
+        raise BadInput(
+            "no pocket with a turned bottom was recognised: there are no regions to choose between turning and milling"
+        )
+    hosts = {p.id: _host(faces, p, pockets) for p in pockets}
+    meridians = {p.id: Meridian.of(faces, [t - 1 for t in p.with_role(BOTTOM)]) for p in pockets}
+    standing = {p.id: _standing(found, faces, p, meridians[p.id]) for p in pockets}
+    return tuple(
+        CasingBottom(
+            pocket=p,
+            meridian=meridians[p.id],
+            bosses=tuple(
+                sorted(
+                    (b for q in pockets if q is p or hosts[q.id] == p.id for b in standing[q.id]),
+                    key=lambda b: b.id,
+                )
+            ),
+            full_circle=any(faces.runs_round(t - 1) for t in p.with_role(BOTTOM)),
+            recess_of=hosts[p.id],
+        )
+        for p in pockets
+    )
+
+
+def _host(faces: CasingFaces, pocket: Feature, pockets: Sequence[Feature]) -> str:
+    """Return the pocket whose bottom a recess is sunk into, over the convex edges of its walls; empty where it is none."""
+    if any(faces.runs_round(t - 1) for t in pocket.with_role(BOTTOM)):
+        return ""
+    beyond = {n for t in pocket.with_role(SIDE) for n in faces.graph.neighbours(t - 1, CONVEX)}
+    for other in pockets:
+        if other is not pocket and beyond & {t - 1 for t in other.with_role(BOTTOM)}:
+            return other.id
+    return ""
+
+
+def _standing(
+    found: Recognition, faces: CasingFaces, pocket: Feature, meridian: Meridian
+) -> list[StandingBoss]:
+    made = []
+    for feature in found.of_kind(BOSS):
+        if feature.attributes.get("on") != pocket.id or not feature.with_role(TOP):
+            continue
+        boss = BossFaces(
+            top=tuple(t - 1 for t in feature.with_role(TOP)),
+            sides=tuple(t - 1 for t in feature.with_role(SIDE)),
+            fillets=tuple(t - 1 for t in feature.with_role(ROOT_FILLET)),
+            ground=tuple(t - 1 for t in pocket.with_role(BOTTOM)),
+        )
+        outline = with_fillets(faces, boss, boss_outline(faces, boss), meridian)
+        height = feature.sizes.get("height", 0.0)
+        made.append(
+            StandingBoss(
+                feature=feature,
+                outline=outline,
+                height=float(height) if isinstance(height, (int, float)) else 0.0,
+            )
+        )
+    return made

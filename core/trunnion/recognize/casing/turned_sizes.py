@@ -1,0 +1,67 @@
+"""Sizes of what is turned on a casing: pockets by their bottom, profiles by their diameters and which side of the wall they are on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from trunnion.model.feature import Size
+from trunnion.recognize.casing.faces import CasingFaces
+from trunnion.recognize.casing.meridian import Meridian
+from trunnion.recognize.casing.pockets import PocketFaces
+from trunnion.units import degrees, rounded
+
+
+def pocket_sizes(faces: CasingFaces, pocket: PocketFaces) -> dict[str, Any]:
+    """Return `sizes` and `attributes` of a pocket: the heights and radii of its bottom's ends, its half angle, and whether it runs round."""
+    meridian = Meridian.of(faces, pocket.bottom)
+    first, last = meridian.ends
+    radii = float(meridian.low[0]), float(meridian.high[-1])
+    sizes: dict[str, Size] = {
+        "z_low": rounded(first),
+        "z_high": rounded(last),
+        "radius_low": rounded(radii[0]),
+        "radius_high": rounded(radii[1]),
+        "half_angle": rounded(degrees(float(np.arctan2(radii[1] - radii[0], last - first)))),
+        "bosses": len(pocket.bosses),
+    }
+    attributes: dict[str, Size] = {
+        "where": "outside" if meridian.outward > 0.0 else "inside",
+        "full_circle": any(faces.runs_round(r) for r in pocket.bottom),
+    }
+    return {"sizes": sizes, "attributes": attributes}
+
+
+def profile_sizes(faces: CasingFaces, rows: Sequence[int]) -> dict[str, Any]:
+    """Return `sizes` and `attributes` of a profile: its ends along the axis, its smallest and largest diameter, the diameters of its
+    cylinders on the inner and the outer side, and how many grooves and ring ribs it has."""
+    graph, mine = faces.graph, list(rows)
+    edges = sorted({e for r in rows for e in graph.edges_of[r]})
+    owned = np.isin(graph.sample_face, mine)
+    points = np.concatenate(
+        [graph.sample_point[owned], graph.start[edges], graph.middle[edges], graph.end[edges]]
+    )
+    away = np.linalg.norm(points[:, :2], axis=1)
+    sizes: dict[str, Size] = {
+        "z_low": rounded(float(points[:, 2].min())),
+        "z_high": rounded(float(points[:, 2].max())),
+        "smallest_diameter": rounded(2.0 * float(away.min())),
+        "largest_diameter": rounded(2.0 * float(away.max())),
+    }
+    for name, bend in (("inner_diameters", -1), ("outer_diameters", 1)):
+        found = sorted(
+            {
+                rounded(2.0 * float(graph.radius[r]))
+                for r in rows
+                if graph.surface[r] == "cylinder" and graph.bend[r] == bend
+            }
+        )
+        if found:
+            sizes[name] = tuple(found)
+    sides = {"inside" if graph.bend[r] < 0 else "outside" for r in rows if graph.bend[r] != 0}
+    attributes: dict[str, Size] = {
+        "where": next(iter(sides)) if len(sides) == 1 else "inside and outside" if sides else "end"
+    }
+    return {"sizes": sizes, "attributes": attributes}
