@@ -19,7 +19,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.pipeline.planning.family import Rated, ratings
 from trunnion.recognize.casing.suitability import CasingKind
 from trunnion.recognize.contract import Suitability
-from trunnion.recognize.impeller.suitability import ImpellerKind
+from trunnion.recognize.impeller import ImpellerFamily
 from trunnion.recognize.panel import PanelFamily
 from trunnion.recognize.revolution import RevolutionAxis, main_axis, of_revolution
 from trunnion.recognize.surface import SurfaceFamily
@@ -43,7 +43,7 @@ def best(graph: FaceGraph) -> Rated:
 def test_a_wheel_with_twisted_blades_is_an_impeller(seed: int) -> None:
     graph, made = graph_of(seed)
     found = best(graph)
-    assert (found.name, found.served) == ("impeller", False)
+    assert (found.name, found.served) == ("impeller", True)
     assert found.suits.score > 0.95
     assert found.suits.reason.startswith(f"{made.count} blades stand evenly about an axis, ")
 
@@ -69,7 +69,7 @@ def test_straight_blades_on_a_disc_are_walls_of_a_panel(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(2))
 def test_blades_that_stand_out_from_a_small_hub_are_no_impeller(seed: int) -> None:
     graph, _ = graph_of(seed, hub=0.3)
-    assert ImpellerKind().suits(graph).score == 0.0
+    assert ImpellerFamily().suits(graph).score == 0.0
     assert best(graph).name == "surface"
 
 
@@ -81,7 +81,7 @@ def test_a_panel_and_a_plain_block_are_panels() -> None:
 def test_a_part_without_a_round_edge_is_neither_wheel_nor_shell() -> None:
     graph = terrace((0, 10, 90, 100), (0, 10, 50, 60), [[40] * 3, [40, 8, 40], [40] * 3]).graph()
     assert main_axis(graph) is None
-    assert [k.suits(graph).score for k in (ImpellerKind(), CasingKind())] == [0.0, 0.0]
+    assert [k.suits(graph).score for k in (ImpellerFamily(), CasingKind())] == [0.0, 0.0]
 
 
 def test_faces_that_enclose_no_material_are_only_grouped() -> None:
@@ -126,7 +126,7 @@ def test_a_random_curved_plate_is_a_part_of_curved_surfaces_by_far(seed: int, su
     assert PanelFamily().suits(graph).score < 0.8
 
 
-@pytest.mark.parametrize("kind", [ImpellerKind(), CasingKind(), PanelFamily(), SurfaceFamily()])
+@pytest.mark.parametrize("kind", [ImpellerFamily(), CasingKind(), PanelFamily(), SurfaceFamily()])
 @pytest.mark.parametrize("make", [round_parts.wheel, round_parts.shell])
 def test_a_kind_does_not_depend_on_place_and_size(kind, make) -> None:
     still, _ = graph_of(0, make)

@@ -28,41 +28,35 @@ BLADES = ("plane", "extrusion", "revolution", "spline", "other")
 """Surfaces of blades; repeated cylinders, cones and tori are holes, rims and fillets."""
 
 
-class ImpellerKind:
-    """Open and closed wheels of radial and mixed-flow compressors, pumps and fans."""
-
-    name = "impeller"
-    noun = "an impeller"
-
-    def suits(self, graph: FaceGraph) -> Suitability:
-        """Return the share of the part's area in its blades, the faces of revolution and all that is repeated about the axis."""
-        axis = main_axis(graph)
-        turned = of_revolution(graph, axis) if axis else np.zeros(len(graph), dtype=bool)
-        repeated = patterns(graph, axis) if axis else ()
-        blades = [
-            p
-            for p in repeated
-            if axis and not turned[p.rows].any() and _may_be_blade(graph, axis, int(p.rows[0]))
-        ]
-        if axis is None or not blades:
-            return Suitability(
-                score=0.0, explained=0.0, reason="nothing like a blade is repeated about an axis"
-            )
-        whole, blade = float(graph.area.sum()), _within(graph, blades)
-        explained = min(1.0, float(graph.area[turned | _within(graph, repeated)].sum()) / whole)
-        share = float(graph.area[blade].sum()) / whole
-        carried = _hub_reach(graph, axis, turned, repeated) / float(
-            _away(graph, axis)[blade[graph.sample_face]].max()
-        )
-        score = explained * min(1.0, share / ENOUGH) if carried >= CARRIED else 0.0
+def suitability(graph: FaceGraph) -> Suitability:
+    """Return the share of the part's area in its blades, the faces of revolution and all that is repeated about the axis."""
+    axis = main_axis(graph)
+    turned = of_revolution(graph, axis) if axis else np.zeros(len(graph), dtype=bool)
+    repeated = patterns(graph, axis) if axis else ()
+    blades = [
+        p
+        for p in repeated
+        if axis and not turned[p.rows].any() and _may_be_blade(graph, axis, int(p.rows[0]))
+    ]
+    if axis is None or not blades:
         return Suitability(
-            score=score,
-            explained=explained,
-            reason=(
-                f"{blades[0].count} blades stand evenly about an axis, {percent(share)} of the area, on a hub of "
-                f"{percent(min(carried, 1.0))} of their radius"
-            ),
+            score=0.0, explained=0.0, reason="nothing like a blade is repeated about an axis"
         )
+    whole, blade = float(graph.area.sum()), _within(graph, blades)
+    explained = min(1.0, float(graph.area[turned | _within(graph, repeated)].sum()) / whole)
+    share = float(graph.area[blade].sum()) / whole
+    carried = _hub_reach(graph, axis, turned, repeated) / float(
+        _away(graph, axis)[blade[graph.sample_face]].max()
+    )
+    score = explained * min(1.0, share / ENOUGH) if carried >= CARRIED else 0.0
+    return Suitability(
+        score=score,
+        explained=explained,
+        reason=(
+            f"{blades[0].count} blades stand evenly about an axis, {percent(share)} of the area, on a hub of "
+            f"{percent(min(carried, 1.0))} of their radius"
+        ),
+    )
 
 
 def _within(graph: FaceGraph, patterns: Sequence[CircularPattern]) -> Bools:
