@@ -1,0 +1,38 @@
+"""What drives strategies in the channels of a bladed wheel: one period of it, and the angles that its path is turned by to all others.
+
+Everything lies in the ROTOR'S FRAME, which is the cutting frame: its z is the wheel's axis, towards the inlet, its origin on the axis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from trunnion.geometry.arrays import Floats
+from trunnion.model.blank import Blank
+from trunnion.plan.channel.gap import Gap
+from trunnion.plan.freeform.drive import SurfaceDrive
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ChannelDrive:
+    """Gaps between the blades of one period, and the surfaces of it.
+
+    `surface` has what any surface strategy needs; its `faces` are those of the period that the operation finishes (none where it roughs).
+    `gaps`: one for each gap of the period. `copies` (rad): the turns about the axis that bring the period to all of its places, the first
+    one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the shroud and towards the hub, where passes begin and
+    end. `inward` says how deep below the blank's surface points (k, 3) lie, negative outside. `blank` is the blank itself.
+    """
+
+    surface: SurfaceDrive
+    gaps: tuple[Gap, ...]
+    copies: tuple[float, ...]
+    blank: Blank
+    inward: Callable[[Floats], Floats]
+    tips: tuple[int, ...] = ()
+    roots: tuple[int, ...] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to cut."""
+        return not self.gaps and not self.surface.faces

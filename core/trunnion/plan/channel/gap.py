@@ -1,0 +1,139 @@
+"""Gaps between neighbouring blades: coordinates u along the stream, v from one camber surface to the next, w from hub to shroud."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import LinearNDInterpolator, RegularGridInterpolator
+
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.sheet.skin import Skin
+from trunnion.plan.channel.meridian import Meridian, cylindrical, placed
+
+U_NODES, W_NODES = 61, 9
+"""Nodes of the net that carries a camber surface: bilinear between them it is a few hundredths of a mm off, and no path lies on it."""
+U_BEYOND = 0.25
+"""How far the net goes on before the leading edge and behind the outlet."""
+TAIL_U, TAIL_W = 6, 3
+"""Nodes at an end of a row along u, or across along w, that say how it goes on beyond."""
+PLACES = 3000
+"""Places of a side that its net is laid through: more of them say no more."""
+LEVEL = math.cos(math.radians(85.0))
+"""Least part of a normal round the axis by which a place of a blade belongs to one of its sides."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Camber:
+    """The middle surface of a blade: its angle about the rotor's axis by u and w, rad, without a leap; straight on beyond its ends."""
+
+    angle: RegularGridInterpolator
+
+    def at(self, u: Floats, w: Floats) -> Floats:
+        """Return the angle (k,) rad at coordinates u and w (k,)."""
+        u = np.clip(u, -U_BEYOND, 1.0 + U_BEYOND)
+        return np.asarray(self.angle(np.stack([u, np.clip(w, 0.0, 1.0)], axis=-1)))
+
+    @property
+    def mean(self) -> float:
+        """The angle in the middle, rad."""
+        return float(self.at(np.array([0.7]), np.array([0.5]))[0])
+
+    def turned(self, angle: float) -> Camber:
+        """Return the camber of the blade turned about the axis by an angle, rad."""
+        return Camber(
+            angle=RegularGridInterpolator(self.angle.grid, self.angle.values + angle)
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Gap:
+    """The space between two neighbouring blades, `lower` at the smaller angle, in the rotor's frame; splitters count as blades."""
+
+    meridian: Meridian
+    lower: Camber
+    upper: Camber
+
+    def angle(self, u: Floats, v: Floats, w: Floats) -> Floats:
+        """Return the angle (k,) rad about the axis at coordinates (k,)."""
+        low, high = self.lower.at(u, w), self.upper.at(u, w)
+        return low + v * (high - low)
+
+    def at(self, u: Floats, v: Floats, w: Floats) -> Floats:
+        """Return points (k, 3) at coordinates (k,)."""
+        return placed(self.meridian.at(u, w), self.angle(u, v, w))
+
+    def hub(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        """Return points (k, 3) on the hub and its outward unit normals (k, 3) there."""
+        zero = np.zeros_like(u)
+        angle = self.angle(u, v, zero)
+        rz, along = self.meridian.hub.at(u)
+        # The shroud lies to the left of the stream: radius outwards, height upwards, seen with the radius to the right.
+        across = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+        normal = np.stack(
+            [across[..., 0] * np.cos(angle), across[..., 0] * np.sin(angle), across[..., 1]],
+            axis=-1,
+        )
+        return placed(rz, angle), normal
+
+    def rulings(self, u: Floats, v: Floats) -> Floats:
+        """Return unit directions (k, 3) from the hub to the shroud along lines of equal u and v: between the walls' own rulings."""
+        line = self.at(u, v, np.ones_like(u)) - self.at(u, v, np.zeros_like(u))
+        return np.asarray(line / np.linalg.norm(line, axis=-1, keepdims=True))
+
+
+def camber_of(skin: Skin, tags: Sequence[int], meridian: Meridian) -> Camber:
+    """Return the camber of a blade by the faces that are its walls, from a skin in the rotor's frame: the mean of its two sides."""
+    rows = np.unique(skin.triangles[skin.of(tuple(tags))])
+    rz, angle = cylindrical(skin.points[rows])
+    middle = math.atan2(float(np.sin(angle).mean()), float(np.cos(angle).mean()))
+    angle = middle + np.mod(angle - middle + math.pi, 2.0 * math.pi) - math.pi
+    around = np.column_stack([-np.sin(angle), np.cos(angle)])
+    lean = (skin.normals[rows][:, :2] * around).sum(axis=1)
+    uw = meridian.coordinates(rz)
+    u = np.linspace(-U_BEYOND, 1.0 + U_BEYOND, U_NODES)
+    w = np.linspace(0.0, 1.0, W_NODES)
+    sides = [_net(uw[s], angle[s], u, w) for s in (lean > LEVEL, lean < -LEVEL)]
+    return Camber(angle=RegularGridInterpolator((u, w), 0.5 * (sides[0] + sides[1])))
+
+
+def _net(uw: Floats, angle: Floats, u: Floats, w: Floats) -> Floats:
+    """Return the angle at the nodes (nu, nw) of a net from scattered places (k, 2): straight on across the stream where walls end in
+    fillets, then along it where there is no blade."""
+    rows = np.arange(0, len(uw), max(1, len(uw) // PLACES))
+    seen = LinearNDInterpolator(uw[rows], angle[rows])(
+        np.stack(np.meshgrid(u, w, indexing="ij"), axis=-1).reshape(-1, 2)
+    ).reshape(len(u), len(w))
+    across = np.stack([_carried_on(w, row, TAIL_W) for row in seen])
+    return np.column_stack([_carried_on(u, row, TAIL_U) for row in across.T])
+
+
+def _carried_on(at: Floats, row: Floats, tail: int) -> Floats:
+    """Return a row (k,) of a net without gaps: straight between what is known, and on beyond by the line through the last of it."""
+    known: Bools = np.isfinite(row)
+    if known.sum() < tail:
+        return np.full(len(row), np.nan)
+    place, value = at[known], row[known]
+    out = np.interp(at, place, value)
+    for beyond, some, end in (
+        (at < place[0], slice(0, tail), 0),
+        (at > place[-1], slice(-tail, None), -1),
+    ):
+        slope = np.polyfit(place[some], value[some], 1)[0]
+        out[beyond] = value[end] + slope * (at[beyond] - place[end])
+    return out
+
+
+def gaps_of(
+    cambers: Sequence[Camber], meridian: Meridian
+) -> tuple[Gap, ...]:
+    """Return the gaps between blades, each from one to the next around the axis, in the order of the cambers, which go once around."""
+    found = []
+    for lower, upper in zip(cambers, [*cambers[1:], cambers[0]], strict=True):
+        turns = math.ceil((lower.mean - upper.mean) / (2.0 * math.pi) - 1e-9)
+        found.append(
+            Gap(meridian=meridian, lower=lower, upper=upper.turned(2.0 * math.pi * max(turns, 0)))
+        )
+    return tuple(found)
