@@ -27,6 +27,7 @@ from trunnion_gui.look import icons
 
 _WIDEST = 10**9
 _FIELD_WIDTH = 138
+_NAME_WIDTH = 190
 _LONG = 60
 """A list of more words than this is searched, not opened."""
 
@@ -190,7 +191,7 @@ def _file(setting: Declared) -> QLineEdit:
 def _searched(setting: Declared) -> QLineEdit:
     """Return a line that finds names of a long list by any of their letters."""
     line = QLineEdit()
-    line.setFixedWidth(_FIELD_WIDTH)
+    line.setFixedWidth(_NAME_WIDTH)
     line.setPlaceholderText(tr("automatic"))
     line.setClearButtonEnabled(True)
     finder = QCompleter([word for word in setting.choices if word], line)
@@ -224,6 +225,8 @@ def show(field: QWidget, value: Value) -> None:
         field.setValue(float(value))
     elif isinstance(field, QLineEdit):
         field.setText(str(value))
+        # A name that is longer than the line is read from its beginning.
+        field.setCursorPosition(0)
 
 
 def on_change(field: QWidget, slot: Callable[[], None]) -> None:

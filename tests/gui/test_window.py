@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QMimeData, QObject, QPoint, QPointF, Qt, QUrl
-from PySide6.QtGui import QDropEvent
+from PySide6.QtGui import QDropEvent, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton, QToolButton
 
@@ -200,6 +200,57 @@ def test_a_message_about_many_faces_names_eight_and_selects_all(opened):
     assert table.item(0, 2).text() == f"{', '.join(faces[:8])} and 7 more"
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(0, 1)).center())
     assert opened.document.selection.current.faces == tuple(range(1, 16))
+
+
+def shown_messages(window) -> list[str]:
+    """Return the texts of the messages that the filter lets through."""
+    table = window.docks.messages.table
+    return [table.item(r, 1).text() for r in range(table.rowCount()) if not table.isRowHidden(r)]
+
+
+def test_messages_are_filtered_by_what_they_name_and_by_how_grave_they_are(programmed):
+    dock = programmed.docks.messages
+    everything = shown_messages(programmed)
+    QTest.keyClicks(dock.filter.words, "pocket-02 CUTTER")
+    assert shown_messages(programmed) == ["two pockets could share a cutter"]
+    assert dock.filter.count.text() == f"1 of {len(everything)}"
+    dock.filter.words.clear()
+    dock.filter.severity.setCurrentIndex(2)
+    assert "two pockets could share a cutter" not in shown_messages(programmed)
+    assert "a wall leans over the floor" in shown_messages(programmed)
+    dock.filter.severity.setCurrentIndex(0)
+    assert shown_messages(programmed) == everything and dock.filter.count.text() == ""
+
+
+def test_a_click_on_a_filtered_message_still_goes_to_what_it_names(programmed):
+    dock = programmed.docks.messages
+    QTest.keyClicks(dock.filter.words, "leans")
+    row = next(r for r in range(dock.table.rowCount()) if not dock.table.isRowHidden(r))
+    at = dock.table.visualItemRect(dock.table.item(row, 1)).center()
+    QTest.mouseClick(dock.table.viewport(), LEFT, pos=at)
+    assert programmed.document.selection.current.id == "pocket-01"
+
+
+def test_selected_messages_are_copied_as_lines(programmed):
+    dock = programmed.docks.messages
+    QTest.keyClicks(dock.filter.words, "leans")
+    row = next(r for r in range(dock.table.rowCount()) if not dock.table.isRowHidden(r))
+    dock.table.selectRow(row)
+    dock.table.setFocus()
+    QTest.keyClick(dock.table, Qt.Key.Key_C, Qt.KeyboardModifier.ControlModifier)
+    copied = QGuiApplication.clipboard().text()
+    assert copied.startswith("warning\ta wall leans over the floor\tpocket-01")
+    assert copied.endswith("panel.leaning-wall") and "\n" not in copied
+    dock.menu().actions()[1].trigger()
+    assert QGuiApplication.clipboard().text() == copied
+
+
+def test_long_messages_wrap_in_the_width_there_is(opened):
+    opened.show_dock("messages")
+    opened.document.noticed.emit(warning("fake.short", "short"))
+    low = opened.docks.messages.table.rowHeight(0)
+    opened.document.noticed.emit(warning("fake.long", "a wall leans over the floor " * 20))
+    assert opened.docks.messages.table.rowHeight(0) > 2 * low
 
 
 def test_a_bad_file_is_told_with_what_to_do(window, tmp_path, idle):

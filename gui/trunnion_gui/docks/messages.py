@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
-from PySide6.QtGui import QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QHeaderView, QTableWidget, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtCore import QPoint, Qt, Signal
+from PySide6.QtGui import QGuiApplication, QKeySequence, QResizeEvent, QShortcut, QShowEvent
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QHeaderView,
+    QMenu,
+    QTableWidget,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from trunnion.findings import Finding, Fix, Severity
 from trunnion_gui.document import Document
@@ -12,16 +20,18 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.widgets import table as tables
+from trunnion_gui.widgets.message_filter import GRAVEST_FIRST, MessageFilter
 
-_ORDER = (Severity.ERROR, Severity.WARNING, Severity.REMARK, Severity.INFO)
 _MOST_NOTICES = 20
+_MOST_WRAPPED = 300
+"""More messages than this have a line each: to lay out so many rows would hold the window."""
 _WHERE, _REMEDY, _CODE, _FIX = 2, 3, 4, 5
 _MOST_SHARES = {_WHERE: 0.16, _REMEDY: 0.3, _CODE: 0.13}
 """How much of the width these columns take at most; what they don't need is the message's."""
 
 
 class MessagesDock(QWidget):
-    """Findings, the gravest first."""
+    """Findings, the gravest first: filtered, wrapped, copied; a click goes to what one names."""
 
     counted = Signal(int)
 
@@ -40,8 +50,17 @@ class MessagesDock(QWidget):
             )
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
+        self.filter = MessageFilter()
+        column.addWidget(self.filter)
         column.addWidget(self.table)
         self.table.setColumnHidden(_FIX, True)
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
+        self.table.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self.table.customContextMenuRequested.connect(self._offer)
+        copy = QShortcut(QKeySequence(QKeySequence.StandardKey.Copy), self.table)
+        copy.setContext(Qt.ShortcutContext.WidgetShortcut)
+        copy.activated.connect(self.copy_selected)
+        self.filter.changed.connect(self._apply_filter)
         self.table.cellClicked.connect(
             lambda row, _: document.selection.select_where(self.findings[row].where)
         )
@@ -61,7 +80,9 @@ class MessagesDock(QWidget):
         verdict = session.verdict.findings if session.verdict else ()
         paths = tuple(f for p in session.paths for f in p.findings)
         own = dict.fromkeys(session.findings() + paths + verdict)
-        listed = tuple(self._notices) + tuple(sorted(own, key=lambda f: _ORDER.index(f.severity)))
+        listed = tuple(self._notices) + tuple(
+            sorted(own, key=lambda f: GRAVEST_FIRST.index(f.severity))
+        )
         if listed == self.findings:
             return
         self.findings = listed
@@ -81,7 +102,51 @@ class MessagesDock(QWidget):
         self.table.horizontalHeader().setSectionResizeMode(_FIX, QHeaderView.ResizeMode.Fixed)
         self.table.setColumnWidth(_FIX, max(widths, default=0))
         self._share_width()
+        self._apply_filter()
         self.counted.emit(len(listed))
+
+    def copy_selected(self) -> None:
+        """Copy the selected messages as lines of text, their columns parted by tabs."""
+        self._copy(sorted({i.row() for i in self.table.selectedIndexes()}))
+
+    def copy_shown(self) -> None:
+        """Copy all messages that the filter lets through."""
+        self._copy([r for r in range(len(self.findings)) if not self.table.isRowHidden(r)])
+
+    def _copy(self, rows: list[int]) -> None:
+        lines = (
+            "\t".join((f.severity.value, f.text, f.location, f.remedy, f.code))
+            for f in (self.findings[r] for r in rows)
+        )
+        if rows:
+            QGuiApplication.clipboard().setText("\n".join(lines))
+
+    def menu(self) -> QMenu:
+        """Return what may be done with messages."""
+        menu = QMenu(self)
+        menu.addAction(tr("Copy"), self.copy_selected).setEnabled(
+            bool(self.table.selectedIndexes())
+        )
+        menu.addAction(tr("Copy all shown"), self.copy_shown)
+        return menu
+
+    def _offer(self, at: QPoint) -> None:
+        self.menu().popup(self.table.viewport().mapToGlobal(at))
+
+    def _apply_filter(self) -> None:
+        """Hide what the filter does not let through; the rows stay those of `findings`."""
+        shown = [self.filter.lets_through(f) for f in self.findings]
+        for row, is_shown in enumerate(shown):
+            self.table.setRowHidden(row, not is_shown)
+        self.filter.show_count(sum(shown), len(shown))
+        self._fit_rows()
+
+    def _fit_rows(self) -> None:
+        """Let messages wrap: each row is as high as its words need in the width there is."""
+        wraps = len(self.findings) <= _MOST_WRAPPED
+        self.table.setWordWrap(wraps)
+        if wraps:
+            self.table.resizeRowsToContents()
 
     def _button(self, fix: Fix) -> QToolButton:
         """Return the button that lets the planner take up a finding's fix."""
@@ -106,6 +171,7 @@ class MessagesDock(QWidget):
         for column, most in _MOST_SHARES.items():
             needed = max(self.table.sizeHintForColumn(column), header.sectionSizeHint(column))
             header.resizeSection(column, min(needed, int(most * width)))
+        self._fit_rows()
 
     def _note(self, finding: Finding) -> None:
         self._notices = [finding, *self._notices][:_MOST_NOTICES]

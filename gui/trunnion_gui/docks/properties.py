@@ -45,6 +45,14 @@ def tool_rows(operation: Operation) -> Rows:
     return rows
 
 
+def speed_rows(data: CuttingData) -> Rows:
+    """Return spindle speed and feed, for an operation without fields for them."""
+    return [
+        (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"),
+        (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),
+    ]
+
+
 def mode_rows(data: CuttingData) -> Rows:
     """Return what a program gives of speed and feed, where that is more than 1/min and mm/min."""
     rows = []
@@ -81,9 +89,13 @@ class PropertiesDock(QScrollArea):
         self.rules = QLabel()
         self.rules.setObjectName("muted")
         self.rules.setWordWrap(True)
-        self._forms = QVBoxLayout()
-        for widget in (self.title, self.subtitle, self.table, self.rules):
-            self._column.addWidget(widget)
+        self._data, self._forms = QVBoxLayout(), QVBoxLayout()
+        self._data.setContentsMargins(8, 4, 8, 4)
+        self._column.addWidget(self.title)
+        self._column.addWidget(self.subtitle)
+        self._column.addLayout(self._data)
+        self._column.addWidget(self.table)
+        self._column.addWidget(self.rules)
         self._column.addLayout(self._forms)
         self._column.addStretch(1)
         self.setWidget(inside)
@@ -153,8 +165,7 @@ class PropertiesDock(QScrollArea):
             *tool_rows(o),
             (tr("Holder"), o.tool.holder_name),
             (tr("Cutting speed"), f"{amount(data.speed, 0)} m/min"),
-            (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"),
-            (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),
+            *([] if self._is_changeable(o) else speed_rows(data)),
             *mode_rows(data),
             (tr("Feed per tooth"), f"{amount(data.feed_per_tooth)} mm"),
             (tr("Depth of cut"), f"{amount(data.depth)} mm"),
@@ -200,20 +211,24 @@ class PropertiesDock(QScrollArea):
     def _make_data_form(self, operation: Operation | None) -> None:
         """Make the form of what any operation of a rotating tool may be given: tool, spindle speed, feed."""
         if self.data_form is not None:
-            self._forms.removeWidget(self.data_form)
+            self._data.removeWidget(self.data_form)
             self.data_form.deleteLater()
             self.data_form = None
-        groups = self._document.groups.get(OPERATION, ())
-        if operation is None or not operation.tool.rotates or not groups:
+        if operation is None or not self._is_changeable(operation):
             return
         values, id = data_choices(operation), operation.id
-        declared = [replace(s, default=values[s.key]) for s in groups[0].settings]
+        settings = self._document.groups[OPERATION][0].settings
+        declared = [replace(s, default=values[s.key]) for s in settings]
         self.data_form = Form(declared)
         labels = {s.key: s.label for s in declared}
         self.data_form.changed.connect(
             lambda key, value, _: self._change_data(id, key, tr(labels[key]), value)
         )
-        self._forms.addWidget(self.data_form)
+        self._data.addWidget(self.data_form)
+
+    def _is_changeable(self, operation: Operation) -> bool:
+        """Return whether there are fields for an operation's tool, speed and feed: once the worker has said what may be chosen."""
+        return operation.tool.rotates and OPERATION in self._document.groups
 
     def _change_data(self, id: str, key: str, label: str, value: Value) -> None:
         """Ask for a change once: a line that is left by the return key and then loses the focus signals twice."""
