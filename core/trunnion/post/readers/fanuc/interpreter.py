@@ -106,6 +106,11 @@ class FanucMover(TipMover):
         super().drill(block, mode)
         mode.level = mode.level if begun is None else begun
 
+    def path_to_hole(self, mode: ModalCycle, start: Point, top: Point, cycle: Cycle) -> list[Point]:
+        """Return the ends of the rapids that bring a tool over a hole: across at its height."""
+        over = (top[0], top[1], start[2])
+        return [] if over == start[:3] else [over]
+
     def expansion(self, cycle: Cycle, start: Point, top: Point) -> Expansion:
         """Return the moves of a cycle: boring and tapping go out at the feed to the retract plane, further in rapid."""
         if cycle.kind not in (CycleKind.BORE, CycleKind.TAP) or cycle.lift == 0.0:
@@ -179,6 +184,8 @@ class FanucControl(TipControl):
             return self.plane_of(block), comments
         if "P" in words:
             words["P"] /= MILLISECONDS
+        if "G4" in block.codes and "X" in words and "P" not in words:
+            words["P"] = words.pop("X")
         sections = self.state.sections
         follows = isinstance(sections, TiltedSections) and sections.follows
         if follows or "G43.5" in block.codes:
