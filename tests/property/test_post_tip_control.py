@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from five_axis import five_axis_case
 from leaning_paths import HEADER, again, path_of, program, standing, text_of
 from programs import FLAT_16, S1
 from trunnion import registry
@@ -30,6 +31,11 @@ poses = st.tuples(
 )
 by_machine = pytest.mark.parametrize("machine", MACHINES, ids=lambda m: m.name)
 by_dialect = pytest.mark.parametrize("name", DIALECTS)
+
+
+def winds_on(machine) -> bool:
+    """Whether an axis of a machine turns as often as a path does."""
+    return any(a.high - a.low > 3600.0 for a in machine.rotary)
 
 
 @st.composite
@@ -187,3 +193,18 @@ def test_a_spoiled_text_of_five_axes_is_read_or_refused_in_one_line(name, spoils
         dialect.read("".join(text), (FLAT_16,), [S1], {"S1": place})
     except BadInput as refused:
         assert "\n" not in str(refused)
+
+
+@by_dialect
+@pytest.mark.parametrize("machine", [m for m in MACHINES if winds_on(m)], ids=lambda m: m.name)
+def test_a_finishing_path_is_read_row_by_row(name, machine):
+    case = five_axis_case(400, 500)
+    made = program(case.section.path, tool=case.section.tool)
+    place = standing(machine, foot=(100.0, 100.0, -30.0))
+    dialect = registry.get("dialects", name)()
+    text = dialect.write([made], HEADER, PostSettings(), {"S1": place})
+    (found,) = dialect.read(text, (case.section.tool,), [S1], {"S1": place})[0].sections
+    tip, axis = off(case.section.path, found.path)
+    assert tip <= TIP + ROUNDED and axis <= AXIS
+    feeds = [p.feed[p.motion != Motion.RAPID] for p in (case.section.path, found.path)]
+    assert feeds[0] == pytest.approx(feeds[1], abs=0.06)

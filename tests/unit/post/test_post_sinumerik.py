@@ -17,6 +17,7 @@ from trunnion.model.motion.drilling import drilled
 from trunnion.model.motion.program import Program
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.post.dialects.sinumerik import SinumerikDialect
+from trunnion.post.release import is_program_of
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale
 from trunnion.post.writer.tilted_plane import plane_across
@@ -81,6 +82,7 @@ def test_boring_that_goes_out_further_at_the_feed_is_written_out():
 
 def test_the_suffix_is_mpf():
     assert SinumerikDialect().suffix == "MPF"
+    assert is_program_of("B1", "B1.S1.MPF") and is_program_of("B1", "B1.S1.REJECTED.MPF")
 
 
 @pytest.mark.parametrize(
