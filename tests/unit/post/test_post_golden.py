@@ -46,9 +46,16 @@ def dialect_of(name: str, suffix: str):
 def made(case: Path, expected: Path) -> str:
     sources = sorted(case.glob("input*"))
     if sources[0].suffix != ".motions":
-        dialect = dialect_of(case.name, sources[0].suffix)
+        suffix = sources[0].suffix
+        dialect = (
+            registry.get("dialects", "apt")() if suffix == ".cl" else dialect_of(case.name, suffix)
+        )
         setups = [S1, S2] if sources[0].suffix == ".cl" else [S1]
         places = TABLES if "five-axis" in case.name else NO_WORK_POSITIONS
+        if expected.suffix != ".listing":
+            programs = dialect.read(sources[0].read_text(), (FLAT_16,), [S1])
+            target = dialect_of(case.name, expected.suffix)
+            return target.write(programs, HEADER, PostSettings(), TABLES)
         return "".join(
             listing(p, marks=False)
             for p in dialect.read(sources[0].read_text(), (FLAT_16, BULL_10), setups, places)

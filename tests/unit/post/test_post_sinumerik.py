@@ -194,6 +194,15 @@ def test_helices_of_several_turns_and_radii_are_read():
     assert path.centre[-1] == approx([0.0, 0.0, -5.0])
 
 
+def test_a_shop_may_have_its_tools_called_by_name():
+    dialect = SinumerikDialect()
+    dialect.words = replace(dialect.words, tool_change=("SUPA G0 Z0 D0", 'T="{name}" M6'))
+    text = dialect.write([program_1()], HEADER, PostSettings())
+    assert 'T="flat 16" M6' in text
+    (found,) = dialect.read(text, (FLAT_16, BULL_10), [S1])
+    assert [s.tool.number for s in found.sections] == [1, 1, 7]
+
+
 def test_a_helix_of_several_turns_is_one_block():
     # 2.5 turns about (0, 0) from (8, 0) down by 1 mm a turn, then a flat turn and a half more.
     ends = [(8.0, -1.0), (8.0, -2.0), (-8.0, -2.5), (-8.0, -2.5), (8.0, -2.5)]
