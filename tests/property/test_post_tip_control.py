@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from five_axis import five_axis_case
 from leaning_paths import HEADER, again, path_of, program, standing, text_of
 from programs import FLAT_16, S1
 from trunnion import registry
 from trunnion.findings import BadInput, Refused
 from trunnion.model.motion.toolpath import Motion
+from trunnion.model.spindle import FeedMode
 from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
 from trunnion.shop.kinematics import axes_of, rotary_solutions
@@ -30,6 +33,11 @@ poses = st.tuples(
 )
 by_machine = pytest.mark.parametrize("machine", MACHINES, ids=lambda m: m.name)
 by_dialect = pytest.mark.parametrize("name", DIALECTS)
+
+
+def winds_on(machine) -> bool:
+    """Whether an axis of a machine turns as often as a path does."""
+    return any(a.high - a.low > 3600.0 for a in machine.rotary)
 
 
 @st.composite
@@ -187,3 +195,55 @@ def test_a_spoiled_text_of_five_axes_is_read_or_refused_in_one_line(name, spoils
         dialect.read("".join(text), (FLAT_16,), [S1], {"S1": place})
     except BadInput as refused:
         assert "\n" not in str(refused)
+
+
+@by_dialect
+@pytest.mark.parametrize("machine", [m for m in MACHINES if winds_on(m)], ids=lambda m: m.name)
+def test_a_finishing_path_is_read_row_by_row(name, machine):
+    case = five_axis_case(400, 500)
+    made = program(case.section.path, tool=case.section.tool)
+    place = standing(machine, foot=(100.0, 100.0, -30.0))
+    dialect = registry.get("dialects", name)()
+    text = dialect.write([made], HEADER, PostSettings(), {"S1": place})
+    (found,) = dialect.read(text, (case.section.tool,), [S1], {"S1": place})[0].sections
+    tip, axis = off(case.section.path, found.path)
+    assert tip <= TIP + ROUNDED and axis <= AXIS
+    feeds = [p.feed[p.motion != Motion.RAPID] for p in (case.section.path, found.path)]
+    assert feeds[0] == pytest.approx(feeds[1], abs=0.06)
+
+
+@by_dialect
+@pytest.mark.parametrize("units", ["mm", "inch"])
+@pytest.mark.parametrize("mode", FeedMode)
+def test_units_and_feed_modes_change_nothing_of_what_is_said(name, units, mode):
+    place, dialect = standing(MACHINES[0]), registry.get("dialects", name)()
+    turning = path_of(((0.0, 0.0, 300.0), (0.0, 0.1, 0.9)), ((5.0, 0.0, 3.0), (0.2, 0.1, 0.9)))
+    still = path_of(((0.0, 0.0, 300.0), (0.3, 0.1, 0.9)), ((5.0, 0.0, 3.0), (0.3, 0.1, 0.9)))
+    still = replace(still, dwell=np.array([0.0, 0.25]))
+    made = program(turning, still)
+    given_so = replace(made, sections=tuple(replace(s, feed_mode=mode) for s in made.sections))
+    text = dialect.write([given_so], HEADER, PostSettings(units=units), {"S1": place})
+    (read,) = dialect.read(text, (FLAT_16,), [S1], {"S1": place})
+    for planned, found in zip(made.sections, read.sections, strict=True):
+        tip, axis = off(planned.path, found.path)
+        assert tip <= TIP + ROUNDED and axis <= AXIS
+        cut = found.path.motion != Motion.RAPID
+        assert found.path.feed[cut] == pytest.approx(1200.0, rel=2e-4)
+        assert found.path.dwells().sum() == pytest.approx(planned.path.dwells().sum())
+
+
+@by_dialect
+def test_a_tool_that_goes_on_in_its_direction_stays_at_the_work(name):
+    place = standing(MACHINES[0])
+    lean = (0.3, 0.1, 0.9)
+    first = path_of(((0.0, 0.0, 300.0), lean), ((5.0, 0.0, 3.0), lean))
+    second = path_of(((5.0, 0.0, 3.0), lean), ((9.0, 1.0, 3.0), lean))
+    turning = path_of(((9.0, 1.0, 3.0), lean), ((9.0, 9.0, 3.0), (0.0, 0.0, 1.0)))
+    text, read = posted(name, place, first, second, turning)
+    top = "SUPA G0 Z0 D0" if name == "sinumerik" else "G53 G0 Z0."
+    # At the tool change, before the tool is followed out of a tilted plane, at the end.
+    assert text.count(top) == 3
+    # Each begins where the one before has left the tool; the last is lifted at the end.
+    assert [len(path) for path in read[1:]] == [3, 6]
+    for path, planned in zip(read, (first, second, turning), strict=True):
+        assert max(off(planned, path)) <= TIP

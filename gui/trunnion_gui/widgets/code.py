@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QPlainTextEdit, QTextEdit
 from trunnion_gui.look.colours import Theme, motions, readable
 
 _PATTERN = re.compile(
-    r"(?P<comment>\([^)]*\)|;.*$|^\$\$.*$)|(?P<rapid>\bG0?0\b|\bRAPID\b)|(?P<cut>\bG0?[123]\b|\bGOTO\b|\bCIRCLE\b)"
+    r"(?P<comment>(?<!\w)\([^)]*\)|;.*$|^\$\$.*$)|(?P<rapid>\bG0?0\b|\bRAPID\b)|(?P<cut>\bG0?[123]\b|\bGOTO\b|\bCIRCLE\b)"
     r"|(?P<tool>\b[TMS]\d+(?:\.\d+)?\b|\b[A-Z]{4,}/)|(?P<number>\bN\d+\b)"
 )
 

@@ -17,6 +17,7 @@ from trunnion.model.motion.drilling import drilled
 from trunnion.model.motion.program import Program
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.post.dialects.sinumerik import SinumerikDialect
+from trunnion.post.release import is_program_of
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale
 from trunnion.post.writer.tilted_plane import plane_across
@@ -81,6 +82,7 @@ def test_boring_that_goes_out_further_at_the_feed_is_written_out():
 
 def test_the_suffix_is_mpf():
     assert SinumerikDialect().suffix == "MPF"
+    assert is_program_of("B1", "B1.S1.MPF") and is_program_of("B1", "B1.S1.REJECTED.MPF")
 
 
 @pytest.mark.parametrize(
@@ -190,6 +192,15 @@ def test_helices_of_several_turns_and_radii_are_read():
     path = read("G1 Z0 F300\nX10\nG3 X-10 Z-5 I-10 J0 TURN=2\nG2 X0 Y10 CR=10").sections[0].path
     assert path.position[-4:, 2] == approx([-2.0, -4.0, -5.0, -5.0])
     assert path.centre[-1] == approx([0.0, 0.0, -5.0])
+
+
+def test_a_shop_may_have_its_tools_called_by_name():
+    dialect = SinumerikDialect()
+    dialect.words = replace(dialect.words, tool_change=("SUPA G0 Z0 D0", 'T="{name}" M6'))
+    text = dialect.write([program_1()], HEADER, PostSettings())
+    assert 'T="flat 16" M6' in text
+    (found,) = dialect.read(text, (FLAT_16, BULL_10), [S1])
+    assert [s.tool.number for s in found.sections] == [1, 1, 7]
 
 
 def test_a_helix_of_several_turns_is_one_block():

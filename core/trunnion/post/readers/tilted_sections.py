@@ -74,8 +74,8 @@ class TiltedSections(Sections):
     """Sections whose points are given in the plane in force: x, y, z there and the tool's direction.
 
     `matrix` (3, 3) has the plane's axes in the setup frame as columns, `level` says that it is the setup's own, `known` that the rotary
-    axes stand as the plane wants it; `follows` that the control follows the tip, in the setup's own plane. `axis` (3,) is the tool's direction
-    in the setup frame, None while it is not known.
+    axes stand as the plane wants it; `follows` that the control follows the tip, in the setup's own plane. `axis` (3,) is the tool's
+    direction in the setup frame, None while it is not known.
     """
 
     def __init__(self, poses: TipPoses) -> None:

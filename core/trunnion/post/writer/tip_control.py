@@ -137,9 +137,7 @@ class TipWriter(ProgramWriter):
         assert isinstance(modal, TipState)
         path = self.tips(section, modal.vectors)
         goes_on = not changed and modal.at is not None and self.keeps_direction(section)
-        if goes_on:
-            yield from map(numbered, [] if self.follows else self.left())
-        elif not changed:
+        if not goes_on and not changed:
             yield from map(numbered, [*self.left(), words.top])
             modal.at = None
         if not self.joined_length(section.tool):
@@ -204,9 +202,11 @@ class TipWriter(ProgramWriter):
         return self.words.tool_length.format(tool=tool.number) + " " if joined else ""
 
     def keeps_direction(self, section: ProgramSection) -> bool:
-        """Whether a section begins in the direction that the tool has."""
-        off = np.linalg.norm(section.path.axis[0] - self.axis) if self.axis is not None else np.inf
-        return bool(off <= _SAME_DIRECTION)
+        """Whether a section begins in the direction that the tool has, and the control can follow the tip from there without a move: what a
+        machine does as a tilted plane ends is its builder's choice."""
+        if self.axis is None or (self.tilted is not None and not self.tilted.upright):
+            return False
+        return bool(np.linalg.norm(section.path.axis[0] - self.axis) <= _SAME_DIRECTION)
 
     def with_known_feeds(self, section: ProgramSection) -> ProgramSection:
         """Return a section with feeds by the minute where the tool turns: there the control times the tip by itself."""

@@ -42,15 +42,15 @@ class PlaneBlock(Block):
 
 
 class FanucModes(TipModes):
-    """Works off the codes of a Fanuc text. `told` is the plane of a G68.2 to which G53.1 has still to turn the tool."""
+    """Works off the codes of a Fanuc text. `pending` is the plane of a G68.2 to which G53.1 has still to turn the tool."""
 
     own = {
         "tip control": "follow_tip",
-        "plane": "tell_plane",
+        "plane": "set_plane",
         "turn to plane": "turn_to_plane",
         "level plane": "level_plane",
     }
-    told: Floats | None = None
+    pending: Floats | None = None
 
     def follow_tip(self, block: Block) -> None:
         """Follow the tip from here on, with the length of the tool (G43.5)."""
@@ -62,23 +62,23 @@ class FanucModes(TipModes):
         super().drop_length(block)
         self.leave_tip(block)
 
-    def tell_plane(self, block: Block) -> None:
+    def set_plane(self, block: Block) -> None:
         """Take over the angles of a plane (G68.2)."""
         assert isinstance(block, PlaneBlock)
         self.refuse_following(block, "G68.2")
         first, second, third = (math.radians(v) for v in block.angles)
-        self.told = _about_z(first) @ _about_x(second) @ _about_z(third)
+        self.pending = _about_z(first) @ _about_x(second) @ _about_z(third)
 
     def turn_to_plane(self, block: Block) -> None:
-        """Turn the tool along z of the plane that was told (G53.1)."""
-        if self.told is None:
+        """Turn the tool along z of the plane of G68.2 (G53.1)."""
+        if self.pending is None:
             raise BadInput(f"line {block.line}: G53.1 without a plane; put G68.2 before it")
-        matrix, self.told = self.told, None
+        matrix, self.pending = self.pending, None
         self.tilt(block, "G53.1", matrix)
 
     def level_plane(self, block: Block) -> None:
         """Take the plane of the setup again (G69)."""
-        self.told = None
+        self.pending = None
         if isinstance(self.state.sections, TiltedSections):
             self.level(block, "G69")
 
@@ -105,6 +105,11 @@ class FanucMover(TipMover):
             )
         super().drill(block, mode)
         mode.level = mode.level if begun is None else begun
+
+    def path_to_hole(self, mode: ModalCycle, start: Point, top: Point, cycle: Cycle) -> list[Point]:
+        """Return the ends of the rapids that bring a tool over a hole: across at its height."""
+        over = (top[0], top[1], start[2])
+        return [] if over == start[:3] else [over]
 
     def expansion(self, cycle: Cycle, start: Point, top: Point) -> Expansion:
         """Return the moves of a cycle: boring and tapping go out at the feed to the retract plane, further in rapid."""
@@ -179,6 +184,8 @@ class FanucControl(TipControl):
             return self.plane_of(block), comments
         if "P" in words:
             words["P"] /= MILLISECONDS
+        if "G4" in block.codes and "X" in words and "P" not in words:
+            words["P"] = words.pop("X")
         sections = self.state.sections
         follows = isinstance(sections, TiltedSections) and sections.follows
         if follows or "G43.5" in block.codes:
@@ -207,7 +214,7 @@ class FanucControl(TipControl):
         modes = self.modes
         assert isinstance(modes, FanucModes)
         moves = not self.language.moves.isdisjoint(block.words)
-        if modes.told is not None and moves:
+        if modes.pending is not None and moves:
             raise BadInput(f"line {block.line}: a move after G68.2 without G53.1; put G53.1 first")
         super().run(block)
 

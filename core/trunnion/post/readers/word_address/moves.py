@@ -118,7 +118,7 @@ class ToolMover:
             )
         self.check_feed(line, tool)
         cycle, top = hole_of(block, mode, state, self.language, start)
-        over = path_over(mode, start, top, cycle)
+        over = self.path_to_hole(mode, start, top, cycle)
         for end in over:
             state.sections.rapid(line, (*end, *start[3:]), tool, state.cutting())
         plain = self.expansion(cycle, (over or [start])[-1], top)
@@ -133,6 +133,10 @@ class ToolMover:
                 state.sections.feed(line, Motion.LINE, point, NOWHERE, pace, tool, state.cutting())
             if dwell > 0.0:
                 state.sections.dwell(dwell)
+
+    def path_to_hole(self, mode: ModalCycle, start: Point, top: Point, cycle: Cycle) -> list[Point]:
+        """Return the ends of the rapids that bring a tool over a hole, mm."""
+        return path_over(mode, start, top, cycle)
 
     def expansion(self, cycle: Cycle, start: Point, top: Point) -> Expansion:
         """Return the moves of a cycle from a start, on a hole whose axis meets the retract plane at `top`."""
