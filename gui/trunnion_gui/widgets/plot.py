@@ -43,6 +43,9 @@ class Plot(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setMinimumSize(QSize(200, 150))
 
+    def sizeHint(self) -> QSize:
+        return QSize(260, 170)
+
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
         self._theme = theme
