@@ -37,7 +37,7 @@ class Choice:
     it, and then there is neither problem nor optimum."""
 
     handbook: Operation
-    chosen: Operation
+    optimised: Operation
     problem: CuttingProblem | None = None
     optimum: Optimum | None = None
 
@@ -65,7 +65,9 @@ def balance(
         if own.optimize.data == OPTIMISED:
             machine = shop.machine(process.setup(operation.setup).machine)
             own = replace(own, cutting=limits)
-            handbook = _choice(handbook, earlier, material, machine, own, choices, progress).chosen
+            handbook = _choice(
+                handbook, earlier, material, machine, own, choices, progress
+            ).optimised
         done.append(handbook)
     return replace(process, operations=tuple(done))
 
@@ -112,16 +114,16 @@ def _choice(
     problem = problem_of(handbook, earlier, material, machine, settings, choices)
     optimum = None if problem is None else solve(problem, settings, progress)
     if problem is None or optimum is None:
-        return Choice(handbook=handbook, chosen=handbook, problem=problem)
-    chosen = with_peak(
+        return Choice(handbook=handbook, optimised=handbook, problem=problem)
+    optimised = with_peak(
         at_optimum(handbook, problem, optimum, material, machine, settings.cutting),
         earlier,
         material,
         choices,
     )
-    if is_overload(chosen.data):
-        chosen = handbook
-    return Choice(handbook=handbook, chosen=chosen, problem=problem, optimum=optimum)
+    if is_overload(optimised.data):
+        optimised = handbook
+    return Choice(handbook=handbook, optimised=optimised, problem=problem, optimum=optimum)
 
 
 def _of_its_own(operation: Operation) -> bool:
