@@ -50,9 +50,12 @@ def test_a_person_sees_what_the_optimiser_gains_and_how_it_searched(optimised, q
     qtbot.waitUntil(panel.search.front.isVisible, timeout=60000)
     assert panel.search.words.text() == choice_words(operations[row])
     assert len(panel.search.convergence.points) == 40
-    chosen = next(m for m in panel.search.front.marks if m.is_chosen)
-    tables = next(m for m in panel.search.front.marks if not m.is_chosen)
+    chosen = next(m for m in panel.search.front.marks if m.is_optimum)
+    tables = next(m for m in panel.search.front.marks if not m.is_optimum)
     assert chosen.x < tables.x
+    # Both plots have their height: neither is squeezed, nor lies over the other.
+    qtbot.waitUntil(lambda: panel.search.front.height() >= 150, timeout=5000)
+    assert panel.search.front.y() >= panel.search.convergence.geometry().bottom()
     if folder := os.environ.get("TRUNNION_PICTURES"):
         optimised.grab().save(os.path.join(folder, "optimize.png"))
         panel.search.grab().save(os.path.join(folder, "search.png"))

@@ -25,13 +25,13 @@ def test_no_limit_is_passed(seed):
     made = choices_of(process, SHOP, {})[0]
     if made.optimum is None:
         return
-    data, problem = made.chosen.data, made.problem
+    data, problem = made.optimised.data, made.problem
     machine = SHOP.machine(process.setups[0].machine)
     assert (problem.shares(made.optimum.spindle, made.optimum.feed) <= SLACK).all()
     assert machine.spindle_low / SLACK <= data.spindle <= machine.spindle_high * SLACK
     assert data.feed <= machine.feed_max * SLACK
     assert data.depth <= operation.data.depth * SLACK
-    assert not is_overload(data) or made.chosen is made.handbook
+    assert not is_overload(data) or made.optimised is made.handbook
 
 
 @settings(max_examples=40, deadline=None)

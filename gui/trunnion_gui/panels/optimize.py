@@ -123,10 +123,10 @@ class OptimizePanel(Panel):
 
 
 def gain(data: CuttingData) -> str:
-    """Return the share of time that an operation's data save over the tables', with its sign; empty where they are the tables'."""
+    """Return the time that an operation's data save over the tables' in whole per cent, with its sign; empty where they are the tables'."""
     if not data.handbook_feed:
         return ""
-    return f"{100.0 * data.feed_gain:+.1f} %"
+    return f"{round(100.0 * data.feed_gain) + 0:+d} %"
 
 
 def load_words(load: SpindleLoad) -> str:

@@ -70,7 +70,7 @@ class SearchBlock(Foldout):
 
     def _show(self, found: SearchFigures) -> None:
         operation = self._operation
-        if operation is None or found.tables is None or found.chosen is None:
+        if operation is None or found.tables is None or found.optimum is None:
             self.words.setText(
                 tr(
                     "the data of the tables stay: no choice keeps the limits, or there are no models"
@@ -83,14 +83,14 @@ class SearchBlock(Foldout):
         other = tr("load, %") if found.by_load else tr("cost a metre")
         marks = (
             PlotMark(*found.tables, tr("tables")),
-            PlotMark(*found.chosen, tr("optimum"), is_chosen=True),
+            PlotMark(*found.optimum, tr("optimum"), is_optimum=True),
         )
         self.front.show_points(tr("time, s a metre"), other, found.front, marks)
         self._show_plots(True)
 
-    def _show_plots(self, are_shown: bool) -> None:
-        self.convergence.setVisible(are_shown)
-        self.front.setVisible(are_shown)
+    def _show_plots(self, are_visible: bool) -> None:
+        self.convergence.setVisible(are_visible)
+        self.front.setVisible(are_visible)
 
 
 def choice_words(operation: Operation) -> str:

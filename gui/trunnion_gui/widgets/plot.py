@@ -28,7 +28,7 @@ class PlotMark:
     x: float
     y: float
     words: str
-    is_chosen: bool = False
+    is_optimum: bool = False
 
 
 class Plot(QWidget):
@@ -42,6 +42,9 @@ class Plot(QWidget):
         self._across, self._up = "", ""
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setMinimumSize(QSize(200, 150))
+
+    def sizeHint(self) -> QSize:
+        return QSize(260, 170)
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
@@ -80,7 +83,7 @@ class Plot(QWidget):
         self._frame(painter, self._theme)
         self._curve(painter, self._theme)
         for mark in self.marks:
-            self._marked(painter, self._theme, mark)
+            self._draw_mark(painter, self._theme, mark)
         painter.end()
 
     def _frame(self, painter: QPainter, theme: Theme) -> None:
@@ -95,10 +98,10 @@ class Plot(QWidget):
             x = self.position(value, self._range(1)[0]).x()
             box = QRectF(x - 30, area.bottom() + 3, 60, 14)
             painter.drawText(box, Qt.AlignmentFlag.AlignHCenter, f"{value:g}")
-        beside = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+        aligned = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
         for value in self._named(1):
             y = self.position(self._range(0)[0], value).y()
-            painter.drawText(QRectF(0, y - 8, area.left() - 5, 16), beside, f"{value:g}")
+            painter.drawText(QRectF(0, y - 8, area.left() - 5, 16), aligned, f"{value:g}")
 
     def _curve(self, painter: QPainter, theme: Theme) -> None:
         points = [self.position(*p) for p in self.points]
@@ -110,9 +113,9 @@ class Plot(QWidget):
         for point in points:
             painter.drawEllipse(point, _DOT, _DOT)
 
-    def _marked(self, painter: QPainter, theme: Theme, mark: PlotMark) -> None:
+    def _draw_mark(self, painter: QPainter, theme: Theme, mark: PlotMark) -> None:
         at, area = self.position(mark.x, mark.y), self._area()
-        colour = QColor(theme.good if mark.is_chosen else theme.warning)
+        colour = QColor(theme.good if mark.is_optimum else theme.warning)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(colour)
         painter.drawEllipse(at, _MARK, _MARK)
@@ -121,7 +124,7 @@ class Plot(QWidget):
         is_right = at.x() > area.center().x()
         side = Qt.AlignmentFlag.AlignRight if is_right else Qt.AlignmentFlag.AlignLeft
         left = at.x() - 127 if is_right else at.x() + 7
-        top = min(max(at.y() + (4 if mark.is_chosen else -18), area.top()), area.bottom() - 15)
+        top = min(max(at.y() + (4 if mark.is_optimum else -18), area.top()), area.bottom() - 15)
         painter.drawText(QRectF(left, top, 120, 15), side, mark.words)
 
     def _area(self) -> QRectF:

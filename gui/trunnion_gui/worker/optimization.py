@@ -15,14 +15,14 @@ Pair = tuple[float, float]
 @dataclass(frozen=True, slots=True)
 class SearchFigures:
     """How the genetic algorithm went for an operation: the best objective of each generation, and points of time (s a metre of way) against
-    cost a metre, or load in percent where `by_load`: the front, the tables' point and the chosen one. Empty where it has no models.
+    cost a metre, or load in percent where `by_load`: the front, the tables' point and the optimum. Empty where it has no models.
     """
 
     operation: str
     convergence: tuple[float, ...] = ()
     front: tuple[Pair, ...] = ()
     tables: Pair | None = None
-    chosen: Pair | None = None
+    optimum: Pair | None = None
     by_load: bool = False
 
 

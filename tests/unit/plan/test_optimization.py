@@ -243,7 +243,7 @@ def test_the_bound_of_roughing_is_above_what_its_data_remove():
     made, process = choice(seed), random_operation(seed)[1]
     material, machine = SHOP.material(process.material), SHOP.machine(process.setups[0].machine)
     bound = removal_bound(made.handbook, material, machine, OptimizationSettings.of({}))
-    assert bound >= made.chosen.data.removal_rate > 0.0
+    assert bound >= made.optimised.data.removal_rate > 0.0
 
 
 def test_the_ranges_are_the_materials_own():

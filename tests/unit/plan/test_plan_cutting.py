@@ -31,6 +31,8 @@ ALUMINIUM, MACHINE, DEFAULT = (
     choose(CuttingSettings, {}),
 )
 
+TABLES = {"optimize.data": "handbook"}
+
 
 def tool(name: str):
     return next(t for t in SHOP.tools if t.name == name)
@@ -106,13 +108,14 @@ def process(kind: str, by_hand: bool = False) -> ProcessTree:
 
 
 def test_balance_computes_every_operation_again():
-    data = balance(process("wall"), SHOP, DEFAULT, {}).operations[0].data
+    data = balance(process("wall"), SHOP, DEFAULT, TABLES).operations[0].data
     assert data.spindle == approx(900_000 / (math.pi * 20))
 
 
 def test_balance_leaves_what_a_person_set():
     assert (
-        balance(process("wall", by_hand=True), SHOP, DEFAULT, {}).operations[0].data.spindle == 1000
+        balance(process("wall", by_hand=True), SHOP, DEFAULT, TABLES).operations[0].data.spindle
+        == 1000
     )
 
 

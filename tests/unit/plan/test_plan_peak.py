@@ -32,6 +32,7 @@ from trunnion.toolpath.motion.engagement import corner_width, segment, step_widt
 
 SHOP = load_shop()
 ALUMINIUM = SHOP.material("EN AW-7075")
+TABLES = {"optimize.data": "handbook"}
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=20.0, machine="Mill 1200")
 
 
@@ -53,7 +54,8 @@ def process(*operations) -> ProcessTree:
 
 def balanced(*operations, choices=None, **cutting):
     chosen = choose(CuttingSettings, {f"cutting.{name}": value for name, value in cutting.items()})
-    return balance(process(*operations), SHOP, chosen, choices or {}).operations
+    words = {**TABLES, **(choices or {})}
+    return balance(process(*operations), SHOP, chosen, words).operations
 
 
 def slot_power(data, share):

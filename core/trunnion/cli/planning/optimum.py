@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from trunnion.cli.common import show_json, table, words_of
 
 if TYPE_CHECKING:
-    from trunnion.plan.cutting.optimization.example import CutExample
+    from trunnion.plan.cutting.optimization.example import CutExample, PrintedPoint
     from trunnion.plan.cutting.optimization.genetic import FrontPoint
     from trunnion.plan.cutting.optimization.operation import OptimizationSettings
 
@@ -80,7 +80,9 @@ def optimised(cut: CutExample, settings: OptimizationSettings) -> dict[str, Any]
     problem, weight = cut.problem(), settings.optimize.time_weight
     exact = solve_exactly(problem, weight)
     genetic = solve_genetically(problem, weight, settings.genetic)
-    points = [(p.name, p.spindle, p.feed, p) for p in cut.printed]
+    points: list[tuple[str, float, float, PrintedPoint | None]] = [
+        (p.name, p.spindle, p.feed, p) for p in cut.printed
+    ]
     points += [
         (name, o.spindle, o.feed, None)
         for name, o in (("exact", exact), ("genetic", genetic.optimum if genetic else None))

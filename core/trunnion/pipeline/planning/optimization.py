@@ -110,9 +110,9 @@ def comparisons(
 
 def _compared(choice: Choice, bound: float, session: Session) -> OperationComparison:
     problem, optimum, id = choice.problem, choice.optimum, choice.handbook.id
-    is_changed = optimum is not None and choice.chosen is not choice.handbook
+    is_changed = optimum is not None and choice.optimised is not choice.handbook
     handbook = None if problem is None else _figures(problem, choice.handbook.data)
-    optimised = _figures(problem, choice.chosen.data) if problem and is_changed else None
+    optimised = _figures(problem, choice.optimised.data) if problem and is_changed else None
     verdict = session.verdict
     proof = next((p for p in verdict.operations if p.operation == id), None) if verdict else None
     removed = proof.removed / MM3_PER_CM3 if proof is not None and bound > 0.0 else 0.0

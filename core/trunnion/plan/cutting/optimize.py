@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from trunnion.model.material import Machine, Material
@@ -37,9 +37,13 @@ class Choice:
     it, and then there is neither problem nor optimum."""
 
     handbook: Operation
-    chosen: Operation
+    optimised: Operation
     problem: CuttingProblem | None = None
     optimum: Optimum | None = None
+
+
+Solutions = dict[Hashable, Optimum | None]
+"""Optima by the identity of their problems: many operations of a part are alike."""
 
 
 def balance(
@@ -54,7 +58,7 @@ def balance(
     Every operation is told the peak of its load under a session's `choices` for the strategies. `optimize.data` says whether spindle speed
     and feed are those of the tables or the optimiser's.
     """
-    material, done = shop.material(process.material), list[Operation]()
+    material, done, solutions = shop.material(process.material), list[Operation](), Solutions()
     for operation in progress.each(process.operations):
         earlier = [o for o in done if o.setup == operation.setup]
         own = _own_choices(operation, choices)
@@ -65,7 +69,9 @@ def balance(
         if own.optimize.data == OPTIMISED:
             machine = shop.machine(process.setup(operation.setup).machine)
             own = replace(own, cutting=limits)
-            handbook = _choice(handbook, earlier, material, machine, own, choices, progress).chosen
+            handbook = _choice(
+                handbook, earlier, material, machine, own, choices, solutions, progress
+            ).optimised
         done.append(handbook)
     return replace(process, operations=tuple(done))
 
@@ -82,6 +88,7 @@ def choices_of(
     Where the id of one is given, that `only`.
     """
     material, done, found = shop.material(process.material), list[Operation](), list[Choice]()
+    solutions = Solutions()
     for operation in progress.each(process.operations):
         earlier = [o for o in done if o.setup == operation.setup]
         own = _own_choices(operation, choices)
@@ -90,13 +97,26 @@ def choices_of(
             recomputed(operation, process, material, shop, own.cutting), earlier, material, choices
         )
         if only in ("", operation.id):
-            found.append(_choice(handbook, earlier, material, machine, own, choices, progress))
+            found.append(
+                _choice(handbook, earlier, material, machine, own, choices, solutions, progress)
+            )
         done.append(handbook)
     return tuple(found)
 
 
 def _own_choices(operation: Operation, choices: Mapping[str, Value]) -> OptimizationSettings:
     return OptimizationSettings.of({**choices, **operation.choices})
+
+
+def _solved(
+    problem: CuttingProblem,
+    settings: OptimizationSettings,
+    solutions: Solutions,
+    progress: Progress,
+) -> Optimum | None:
+    if problem.identity not in solutions:
+        solutions[problem.identity] = solve(problem, settings, progress)
+    return solutions[problem.identity]
 
 
 def _choice(
@@ -106,22 +126,23 @@ def _choice(
     machine: Machine,
     settings: OptimizationSettings,
     choices: Mapping[str, Value],
+    solutions: Solutions,
     progress: Progress,
 ) -> Choice:
     """Return an operation's choice; the tables' data stay where nothing keeps the limits, or the load would pass them all the same."""
     problem = problem_of(handbook, earlier, material, machine, settings, choices)
-    optimum = None if problem is None else solve(problem, settings, progress)
+    optimum = None if problem is None else _solved(problem, settings, solutions, progress)
     if problem is None or optimum is None:
-        return Choice(handbook=handbook, chosen=handbook, problem=problem)
-    chosen = with_peak(
+        return Choice(handbook=handbook, optimised=handbook, problem=problem)
+    optimised = with_peak(
         at_optimum(handbook, problem, optimum, material, machine, settings.cutting),
         earlier,
         material,
         choices,
     )
-    if is_overload(chosen.data):
-        chosen = handbook
-    return Choice(handbook=handbook, chosen=chosen, problem=problem, optimum=optimum)
+    if is_overload(optimised.data):
+        optimised = handbook
+    return Choice(handbook=handbook, optimised=optimised, problem=problem, optimum=optimum)
 
 
 def _of_its_own(operation: Operation) -> bool:

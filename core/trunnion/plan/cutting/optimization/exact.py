@@ -21,8 +21,8 @@ from trunnion.plan.cutting.optimization.problem import (
 
 FIRST, SPEEDS, FEEDS = 129, 17, 9
 """Points of the grid along speed, at first and later, and along feed: the first one sees every kink of a spindle's power curve."""
-ROUNDS = 12
-"""Grids that are looked at: from a range of 100 to 1 the last one's points are some 1e-7 apart."""
+ROUNDS = 9
+"""Grids that are looked at: from a range of 100 to 1 the last one's points are some 1e-6 apart."""
 KEPT = 2.0
 """Cells around the best point that the next grid covers, on either side."""
 

@@ -27,7 +27,7 @@ from trunnion.plan.cutting.optimization.problem import (
 from trunnion.plan.cutting.optimization.settings import LOAD, GeneticSettings
 from trunnion.progress import NO_PROGRESS, Progress
 
-CROWDED = 15.0
+DISTRIBUTION_INDEX = 15.0
 """Distribution index of crossover and mutation: pymoo's own for crossover."""
 Values = Callable[[Floats, Floats], Floats]
 """From spindle speeds (n,) and feeds per tooth (n,) to objectives (n, k)."""
@@ -148,7 +148,7 @@ def _run(
         spindle = np.clip(np.exp(low + speed * (high - low)), *problem.spindle)
         return np.column_stack([spindle, problem.feed_between(spindle, step)])
 
-    class Choice(Problem):
+    class GeneticProblem(Problem):
         def __init__(self) -> None:
             super().__init__(
                 n_var=2,
@@ -169,14 +169,14 @@ def _run(
         if best is not None and running.opt is not None and bool(running.opt[0].FEAS[0]):
             best.append(float(running.opt[0].F[0]))
 
-    with _quiet():
+    with _without_warnings():
         result = minimize(
-            Choice(),
+            GeneticProblem(),
             algorithm(
                 pop_size=settings.population,
                 eliminate_duplicates=False,
-                crossover=SBX(prob=settings.crossover, eta=CROWDED),
-                mutation=PM(prob=1.0, prob_var=settings.mutation, eta=CROWDED),
+                crossover=SBX(prob=settings.crossover, eta=DISTRIBUTION_INDEX),
+                mutation=PM(prob=1.0, prob_var=settings.mutation, eta=DISTRIBUTION_INDEX),
             ),
             ("n_gen", settings.generations),
             seed=settings.seed,
@@ -191,7 +191,7 @@ def _run(
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def _without_warnings() -> Iterator[None]:
     """Keep warnings of the library's own numbers from a person: what it returns is checked."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")

@@ -145,6 +145,17 @@ def problem_at(
         spindle_bounds=bounds,
         feed_bounds=(CHIP, CHIP),
         load=names[1],
+        identity=(
+            tool,
+            is_rough,
+            steady,
+            peak,
+            data.spindle,
+            data.feed_per_tooth,
+            material.name,
+            machine.name,
+            settings,
+        ),
     )
 
 

@@ -12,7 +12,7 @@ marks all are: so the largest feed that keeps all of them is known in closed for
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,7 +60,7 @@ class CuttingProblem:
     """One operation's choice: ranges of spindle speed (1/min) and feed per tooth (mm), constraints, and the objectives of a way of `length`
     mm with `teeth`; `life` is the tool's life in min by spindle speed; `load` is the constraint that counts as load of the spindle.
 
-    `handbook` is the point (spindle, feed per tooth) of the tables.
+    `handbook` is the point (spindle, feed per tooth) of the tables. Problems of one `identity`, where it is given, have one solution.
     """
 
     length: float
@@ -74,6 +74,7 @@ class CuttingProblem:
     spindle_bounds: tuple[str, str] = ("spindle speed", "spindle speed")
     feed_bounds: tuple[str, str] = ("chip thickness", "chip thickness")
     load: str = ""
+    identity: Hashable = None
 
     def time(self, spindle: ArrayLike, feed: ArrayLike) -> Floats:
         """Return the times t (n,) in min."""
