@@ -157,7 +157,9 @@ def test_a_sharp_foot_of_a_curved_floor_gets_an_end_sharper_than_any_ball() -> N
     assert last.form == "bull" and last.corner_radius < min(t.corner_radius for t in balls)
     assert floors[-1].choices["surface.earlier"] == balls[-1].name
     # In a fillet there is nothing for it.
-    assert {o.tool.form for o in operations("bowl").values() if o.kind == "curved_floor"} == {"ball"}
+    assert {o.tool.form for o in operations("bowl").values() if o.kind == "curved_floor"} == {
+        "ball"
+    }
 
 
 def test_a_typical_plan_without_layers_refuses_leaning_walls() -> None:

@@ -60,6 +60,10 @@ class Band:
     boundary: Region
 
 
+ALL_ROUND = 0.5
+"""Of the longer side of a face's box, by its edges' ends and middles: no face goes farther out of that."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Ceiling:
     """A face that looks down somewhere: the highest position where it does, its highest position at all, the heights of its edges with tops
@@ -94,6 +98,9 @@ class SetupSpace:
     top: float
     _bands: dict[str, tuple[Band, ...]] = field(init=False, repr=False, default_factory=dict)
     _ceilings: list[_Ceiling] = field(init=False, repr=False, default_factory=list)
+    _overheads: dict[tuple[int, float], Region] = field(
+        init=False, repr=False, default_factory=dict
+    )
 
     @staticmethod
     def of(part: SectionSource, recognition: Recognition, blank: Blank, setup: Setup) -> SetupSpace:
@@ -138,16 +145,28 @@ class SetupSpace:
         return material.union(self.hanging_over(z, near)) if near else material
 
     def hanging_over(self, z: float, near: Region) -> Region:
-        """Return the part's material in the sections above a height that show what hangs over it near a region, if anything."""
+        """Return what hangs over a height near a region, if anything: the part's material in the sections above it that show it, each no
+        farther than around the face that hangs over."""
         low, high = near.box()
-        over = [
-            height
-            for c in self._hanging()
-            if c.hangs > z and (c.low <= high).all() and (c.high >= low).all()
-            for height in c.sections_over(z)
-        ]
-        above = [self.section(height) for height in _distinct(over) if height < self.top]
-        return union_all(above) if above else EMPTY_REGION
+        return union_all(
+            [
+                self._overhead(n, height)
+                for n, c in enumerate(self._hanging())
+                if c.hangs > z and (c.low <= high).all() and (c.high >= low).all()
+                for height in c.sections_over(z)
+                if height < self.top
+            ]
+        )
+
+    def _overhead(self, number: int, height: float) -> Region:
+        """Return the part's material at a height around a face that looks down, by its number. Beyond it nothing stands out further than
+        the material below, but for what other faces show."""
+        if (number, height) not in self._overheads:
+            ceiling = self._ceilings[number]
+            around = ALL_ROUND * float((ceiling.high - ceiling.low).max()) + tolerance.OFF_PLANE
+            window = Region.rectangle(*(ceiling.low - around), *(ceiling.high + around))
+            self._overheads[number, height] = self.section(height).intersect(window)
+        return self._overheads[number, height]
 
     def _hanging(self) -> list[_Ceiling]:
         """Return the faces that look down somewhere."""
