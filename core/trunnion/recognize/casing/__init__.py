@@ -19,7 +19,6 @@ from trunnion.recognize.casing.features import made_features
 from trunnion.recognize.casing.frame import casing_frame, turned_about, turned_faces
 from trunnion.recognize.casing.holes import casing_holes
 from trunnion.recognize.casing.kinds import KINDS
-from trunnion.recognize.casing.pockets import find_pockets, find_profiles
 from trunnion.recognize.casing.settings import BOSS, CasingSettings
 from trunnion.recognize.casing.suitability import suitability
 from trunnion.recognize.casing.unexplained import rest_findings
@@ -46,7 +45,7 @@ class CasingFamily:
         settings: CasingSettings,
         progress: Progress = NO_PROGRESS,
     ) -> Recognition:
-        """Return the features of a casing. Raises `BadInput` when nothing of the part turns about an axis, `Cancelled` when asked to stop."""
+        """Return the features of a casing. Raises `BadInput` for a part without an axis, `Cancelled` when asked to stop."""
         progress.at(0.0, "looking for the main axis")
         frame = progress.aside(lambda _: casing_frame(graph))
         progress.at(0.2, "looking for holes")

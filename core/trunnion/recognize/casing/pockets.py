@@ -103,7 +103,7 @@ def _rising(faces: CasingFaces, bottom: Sequence[int], of_bosses: set[int]) -> I
 
 
 def _is_foot(faces: CasingFaces, row: int, bottom: set[int]) -> bool:
-    """Return whether a face is a fillet between a bottom and what rises from it: hollow, and with a face beyond that looks elsewhere."""
+    """Return whether a face is a fillet between a bottom and what rises from it: hollow, and a face beyond looks elsewhere."""
     graph = faces.graph
     if row in bottom or graph.surface[row] in ("plane", "cone") or graph.bend[row] >= 0:
         return False
@@ -126,7 +126,7 @@ RISES = 0.7
 
 
 def _is_recess(faces: CasingFaces, row: int) -> bool:
-    """Return whether a turned face is the floor of a milled recess: it does not run round, and faces that are not turned rise all around."""
+    """Return whether a turned face is the floor of a milled recess: it does not run round, and milled walls rise all around it."""
     graph = faces.graph
     if row in faces.holes or not faces.turned[row] or faces.runs_round(row):
         return False
@@ -148,8 +148,9 @@ def find_profiles(faces: CasingFaces, taken: set[int]) -> tuple[tuple[int, ...],
     graph = faces.graph
     free = {r for r in faces.present if faces.turned[r] and r not in taken and r not in faces.holes}
     found = []
+    allowed = frozenset(free)
     while free:
-        group = grown(graph, [min(free)], lambda _edge, _a, b: b in free)
+        group = grown(graph, [min(free)], lambda _edge, _a, b: b in allowed)
         free -= set(group)
         found.append(tuple(sorted(group)))
     return tuple(found)

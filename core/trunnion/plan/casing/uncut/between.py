@@ -11,6 +11,7 @@ distances, not from cells, so the arcs of the swept cutter are kept.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import contourpy
 import numpy as np
@@ -41,7 +42,7 @@ LEAST = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Milled:
-    """One side of a gap: the frame that its sides are milled along (z), in the casing's frame; its plane `area` there, the `axis` points (k, 2)
+    """One side of a gap: the frame that its sides are milled along (z), in the casing's frame; its plane `area`, the `axis` points (k, 2)
     that the cutter's axis runs through, and its `foot` (k, 3) on the ground."""
 
     owner: str
@@ -88,13 +89,13 @@ def shadow(of: Milled, onto: Milled) -> shapely.Geometry:
     """Return the shadow of one side along the direction of the other: of its top, its foot, and the walls between them."""
     rim = np.vstack([c.sampled(CHORD) for c in of.area.curves()[:1]])
     top = of.frame.to_world(np.column_stack([rim, np.zeros(len(rim))]))
-    parts = [shapely.Polygon(onto.flat(top)).buffer(0.0)]
+    parts: list[Any] = [shapely.Polygon(onto.flat(top)).buffer(0.0)]
     foot = _under(of, rim)
     low, high = onto.flat(foot), onto.flat(top)
     parts.append(shapely.Polygon(low).buffer(0.0))
     after = np.roll(np.arange(len(rim)), -1)
     walls = np.stack([low, high, high[after], low[after]], axis=1)
-    parts += list(shapely.convex_hull(shapely.polygons(walls)))
+    parts += np.asarray(shapely.convex_hull(shapely.polygons(walls))).tolist()
     return shapely.union_all(parts)
 
 
@@ -232,10 +233,10 @@ def _clear(a: Milled, b: Milled) -> float:
 def _boundary(grid: GroundGrid, inside: Floats) -> Floats:
     """Return the outline (k, 3) of the largest area on the ground where a field (m, n) is positive."""
     padded = np.pad(inside, 1, constant_values=-CELL)
-    lines = contourpy.contour_generator(z=padded).lines(0.0)
+    lines: list[Any] = list(contourpy.contour_generator(z=padded).lines(0.0))
     if not lines:
         return np.zeros((0, 3))
-    longest = max(lines, key=len)
+    longest = np.asarray(max(lines, key=len), dtype=np.float64)
     theta = np.interp(longest[:, 1] - 1.0, np.arange(len(grid.theta)), grid.theta)
     z = np.interp(longest[:, 0] - 1.0, np.arange(len(grid.z)), grid.z)
     r = grid.meridian.radius(z)

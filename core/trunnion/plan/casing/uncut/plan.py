@@ -66,7 +66,7 @@ def _aside(
 
 def _near(a: Milled, b: Milled, reach: float) -> bool:
     """Return whether two feet come nearer to each other than a cutter is wide."""
-    return bool(cKDTree(a.foot).query(b.foot)[0].min() < reach)
+    return bool(np.min(cKDTree(a.foot).query(b.foot)[0]) < reach)
 
 
 def _walls(
