@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH
 from trunnion.recognize.casing.bosses import BossFaces
 from trunnion.recognize.casing.faces import CasingFaces
@@ -144,9 +146,18 @@ def _is_recess(faces: CasingFaces, row: int) -> bool:
 
 
 def find_profiles(faces: CasingFaces, taken: set[int]) -> tuple[tuple[int, ...], ...]:
-    """Return the turned faces that are in nothing else yet, in groups that hang together by common edges."""
+    """Return the turned faces that are in nothing else yet, in groups that hang together by common edges.
+
+    What ends in an inner corner with a wall that is not turned is the end of an opening, not turned itself.
+    """
     graph = faces.graph
     free = {r for r in faces.present if faces.turned[r] and r not in taken and r not in faces.holes}
+    walls = set(faces.present) - taken - faces.holes - set(np.flatnonzero(faces.turned).tolist())
+    free = {
+        r
+        for r in free
+        if faces.runs_round(r) or not walls.intersection(graph.neighbours(r, CONCAVE))
+    }
     found = []
     allowed = frozenset(free)
     while free:
