@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import tempfile
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -112,6 +113,33 @@ def casing(seed: int, most: int = 8) -> MadeCasing:
         if _is_sound(made):
             return made
     raise ValueError(f"casing {seed}: {MOST_DRAWS} draws gave no valid solid")
+
+
+@cache
+def small_casing() -> Any:
+    """Return a small casing with three bosses, one of them drilled, and a flange at either end."""
+    shell = Shell(radius=40.0, slope=0.0, length=50.0, wall=3.0, flange=5.0, rim=9.0, rib=0.0)
+    bosses = [
+        MadeBoss(
+            outline=outline,
+            theta=theta,
+            z=25.0,
+            height=5.0,
+            tilt=0.0,
+            fillet=0.0,
+            sizes=sizes,
+            hole=hole,
+        )
+        for outline, theta, sizes, hole in (
+            ("circle", 20.0, (7.0, 7.0), 5.0),
+            ("rectangle", 60.0, (12.0, 14.0, 2.0), 0.0),
+            ("lobe", 200.0, (5.0, 3.0, 3.5), 0.0),
+        )
+    ]
+    body = shell.solid()
+    for boss in bosses:
+        body = _with_boss(body, shell, boss)
+    return body.cut(shell.bore()).cut(_drilled(shell, bosses[0])).val().wrapped
 
 
 def _is_sound(made: MadeCasing) -> bool:

@@ -67,8 +67,14 @@ class Views:
         return (
             found is None
             or not owners
-            or any(v.name == found.family or v in self.present(found) for v in owners)
+            or any(v.name == found.family or v in self._foreign(found) for v in owners)
         )
+
+    def _foreign(self, found: Recognition) -> tuple[FamilyView, ...]:
+        """Return the views of kinds that were found; a kind that the view's family shares with the part's own says nothing."""
+        own = _declared(found.family)
+        kinds = {f.kind for f in found}
+        return tuple(v for v in self if kinds & set(v.kinds) - (own & _declared(v.name)))
 
     def face_menu(self, parent: QWidget, tags: tuple[int, ...]) -> QMenu:
         """Return what may be done with some faces."""
@@ -76,6 +82,12 @@ class Views:
         for view in self:
             view.add_face_entries(menu, tags)
         return menu
+
+
+def _declared(family: str) -> set[str]:
+    """Return the kinds of features of a family, none where it is not registered."""
+    known = family in registry.names("families")
+    return {k.name for k in registry.get("families", family).kinds} if known else set()
 
 
 def _view(name: str, document: Document) -> FamilyView:

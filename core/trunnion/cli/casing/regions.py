@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
     exit_code,
@@ -16,6 +16,13 @@ from trunnion.cli.common import (
     words_of,
 )
 from trunnion.findings import BadInput
+
+if TYPE_CHECKING:
+    from trunnion.model.feature import Recognition
+    from trunnion.model.session import Session
+    from trunnion.pipeline import Engine
+
+CASING, POCKET = "casing", "pocket"
 
 
 def add(commands: Any) -> None:
@@ -40,14 +47,7 @@ def run(options: argparse.Namespace) -> int:
     chosen = {own[key]: value for key, value in words.items() if key in own}
     settings = checked(choose(RegionSettings, chosen))
     options.words = [f"{key}={value}" for key, value in words.items() if key not in own]
-    engine, session = open_session(options, "recognize")
-    found = session.recognition
-    if found is None or found.doubt:
-        raise BadInput(found.doubt if found else "nothing was recognised")
-    if not found.of_kind("pocket") or found.family != "casing":
-        raise BadInput(
-            f"{session.part.name if session.part else 'the part'} is no casing with pockets: regions to turn or to mill are those of casings"
-        )
+    engine, session, found = casing_session(options)
     graph = engine.context_of(session).part.graph()
     plans = casing_regions(found, graph, settings, progress_of(options))
     findings = (*session.findings(), *region_findings(plans))
@@ -78,3 +78,17 @@ def run(options: argparse.Namespace) -> int:
         print(table(rows, right=(1, 2, 4, 5)))
     show_findings(options, findings)
     return exit_code(findings)
+
+
+def casing_session(options: argparse.Namespace) -> tuple[Engine, Session, Recognition]:
+    """Return engine, session and features of a casing; raise `BadInput` for a part that is none, or has no pockets."""
+    engine, session = open_session(options, "recognize")
+    found = session.recognition
+    if found is None or found.doubt:
+        raise BadInput(found.doubt if found else "nothing was recognised: recognise the part first")
+    if found.family != CASING or not found.of_kind(POCKET):
+        name = session.part.name if session.part else "the part"
+        raise BadInput(
+            f"{name} is no casing with pockets that bosses stand on; for others there is nothing to choose between turning and milling"
+        )
+    return engine, session, found

@@ -16,10 +16,12 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.casing.bosses import BossFaces, find_bosses
 from trunnion.recognize.casing.faces import CasingFaces
 from trunnion.recognize.casing.features import made_features
+from trunnion.recognize.casing.foot import foot_middle
 from trunnion.recognize.casing.frame import casing_frame, turned_about, turned_faces
 from trunnion.recognize.casing.holes import casing_holes
 from trunnion.recognize.casing.kinds import KINDS
-from trunnion.recognize.casing.pockets import find_pockets, find_profiles
+from trunnion.recognize.casing.meridian import Meridian
+from trunnion.recognize.casing.outline import boss_outline
 from trunnion.recognize.casing.settings import BOSS, CasingSettings
 from trunnion.recognize.casing.suitability import suitability
 from trunnion.recognize.casing.unexplained import rest_findings
@@ -46,7 +48,7 @@ class CasingFamily:
         settings: CasingSettings,
         progress: Progress = NO_PROGRESS,
     ) -> Recognition:
-        """Return the features of a casing. Raises `BadInput` when nothing of the part turns about an axis, `Cancelled` when asked to stop."""
+        """Return the features of a casing. Raises `BadInput` for a part without an axis, `Cancelled` when asked to stop."""
         progress.at(0.0, "looking for the main axis")
         frame = progress.aside(lambda _: casing_frame(graph))
         progress.at(0.2, "looking for holes")
@@ -80,11 +82,12 @@ def _in_frame(graph: FaceGraph, frame: Frame, holes: Sequence[Hole]) -> CasingFa
 
 
 def _outstanding(faces: CasingFaces, bosses: Sequence[BossFaces]) -> Floats:
-    """Return the middle (3,) of the top farthest from the axis, in the casing's frame; of equal ones the largest."""
-    graph = faces.graph
+    """Return where the boss with its top farthest from the axis stands (3,), in the casing's frame; of equal ones the largest."""
+    area = faces.graph.area
 
     def rank(boss: BossFaces) -> tuple[float, float]:
-        away = float(np.linalg.norm(graph.centre[boss.top[0], :2]))
-        return round(away, 2), float(graph.area[list(boss.top)].sum())
+        away = float(np.linalg.norm(boss_outline(faces, boss).frame.origin[:2]))
+        return round(away, 2), float(area[list(boss.top)].sum())
 
-    return np.asarray(graph.centre[max(bosses, key=rank).top[0]])
+    best = max(bosses, key=rank)
+    return foot_middle(boss_outline(faces, best), Meridian.of(faces, best.ground))

@@ -167,7 +167,7 @@ def outline_word(outline: BossOutline) -> str:
 def outline_sizes(outline: BossOutline) -> dict[str, Size]:
     """Return the sizes of an outline by name, mm."""
     word = outline_word(outline)
-    lines, outer, inner = _sorts(outline.pieces)
+    _, outer, inner = _sorts(outline.pieces)
     low, high = _box(outline)
     if word == "circle":
         return {"diameter": rounded(2.0 * outer[0].radius)}

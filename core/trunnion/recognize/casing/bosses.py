@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-
 from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH
 from trunnion.recognize.casing.faces import ALIGNED, CasingFaces
 from trunnion.recognize.grow import grown, same_surface
@@ -121,7 +120,7 @@ def _whole(faces: CasingFaces, row: int) -> tuple[int, ...]:
 
 
 def _sides(faces: CasingFaces, top: tuple[int, ...]) -> tuple[int, ...]:
-    """Return what falls from a top: faces over convex edges, on through chamfers and pieces of sides as far as those that stand on ground."""
+    """Return what falls from a top: faces over convex edges, on through chamfers and pieces of sides to those that stand on ground."""
     graph = faces.graph
 
     def falls(edge: int, a: int, b: int) -> bool:
@@ -141,6 +140,13 @@ def _fillets(faces: CasingFaces, bosses: list[BossFaces], taken: set[int]) -> li
 
     One between two bosses belongs to both.
     """
+    sides_of = {s: n for n, boss in enumerate(bosses) for s in boss.sides}
+    return [_fillets_of(faces, n, boss, sides_of, taken) for n, boss in enumerate(bosses)]
+
+
+def _fillets_of(
+    faces: CasingFaces, mine: int, boss: BossFaces, sides_of: dict[int, int], taken: set[int]
+) -> tuple[int, ...]:
     graph = faces.graph
 
     def may(row: int) -> bool:
@@ -153,12 +159,8 @@ def _fillets(faces: CasingFaces, bosses: list[BossFaces], taken: set[int]) -> li
             and not _owner_beyond(faces, sides_of, b, mine)
         )
 
-    sides_of = {s: n for n, boss in enumerate(bosses) for s in boss.sides}
-    found = []
-    for mine, boss in enumerate(bosses):
-        seeds = [n for s in boss.sides for n in graph.neighbours(s, SMOOTH) if may(n)]
-        found.append(tuple(sorted(grown(graph, dict.fromkeys(seeds), joins))))
-    return found
+    seeds = [n for s in boss.sides for n in graph.neighbours(s, SMOOTH) if may(n)]
+    return tuple(sorted(grown(graph, dict.fromkeys(seeds), joins)))
 
 
 def _owner_beyond(faces: CasingFaces, sides_of: dict[int, int], row: int, mine: int) -> bool:

@@ -21,7 +21,7 @@ from trunnion.tolerance import COINCIDENT, TANGENT
 HALF = np.pi + TANGENT
 """Radians: what sweeps more than half a turn about the main axis runs round the casing and is no side of a boss."""
 ALIGNED = 0.5
-"""Cosine between the normal of a boss's top and that of what it stands on from which on one lies on the other: tops tilt and lean by the
+"""Cosine between the normals of a boss's top and of what it stands on from which on one lies on the other: tops tilt and lean by the
 half width of the boss, together less than 45 degrees; its sides stay above that."""
 BLENDS = ("torus", "revolution", "spline", "other")
 """Surfaces of fillets that may be turned about the main axis: those of the straight edges of a boss that lie across it."""
@@ -29,7 +29,7 @@ BLENDS = ("torus", "revolution", "spline", "other")
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CasingFaces:
-    """A casing's face graph in its frame, z along the main axis: `turned` (n,) by the normals of the faces, `holes` rows of holes' faces."""
+    """A casing's face graph in its frame, z along the main axis: which are `turned` (n,), and in `holes` the rows of holes' faces."""
 
     graph: FaceGraph
     turned: Bools

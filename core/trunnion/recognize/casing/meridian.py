@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from trunnion.geometry.arrays import Floats
 from trunnion.recognize.casing.faces import CasingFaces
@@ -13,6 +14,8 @@ from trunnion.recognize.grow import samples
 from trunnion.tolerance import COINCIDENT, FITTED
 
 STRAIGHT = ("cylinder", "cone")
+SAME_HEIGHT = 3
+"""Decimals of mm to which points of a face are at one height."""
 STEPS = 24
 """Straight pieces that stand for a bent meridian: 0.02 mm off on a quarter turn of 10 mm radius."""
 
@@ -155,7 +158,7 @@ def _straight(faces: CasingFaces, row: int) -> list[tuple[float, float, float, f
 
 
 def _bent(faces: CasingFaces, row: int) -> list[tuple[float, float, float, float]]:
-    """Return straight pieces along a bent meridian: through a cubic in the height that fits the face's points on average."""
+    """Return straight pieces along a bent meridian: of a torus exactly, else through the radii of the face's points over their heights."""
     graph = faces.graph
     edges = list(graph.edges_of[row])
     points = np.concatenate(
@@ -170,8 +173,9 @@ def _bent(faces: CasingFaces, row: int) -> list[tuple[float, float, float, float
         r = major + side * np.sqrt(np.maximum(minor**2 - (at - centre[2]) ** 2, 0.0))
     else:
         at = np.linspace(low, high, STEPS + 1)
-        degree = int(min(5, max(1, len(np.unique(height.round(3))) - 1)))
-        r = np.polynomial.Polynomial.fit(height, radius, degree)(at)
+        known, place = np.unique(height.round(SAME_HEIGHT), return_inverse=True)
+        mean = np.bincount(place, weights=radius) / np.bincount(place)
+        r = PchipInterpolator(known, mean)(at) if len(known) > 1 else np.full(len(at), mean[0])
     return [
         (float(a), float(b), float(p), float(q))
         for a, b, p, q in zip(at[:-1], at[1:], r[:-1], r[1:], strict=True)

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from trunnion.geometry.facegraph import CONCAVE, CONVEX, SMOOTH
 from trunnion.recognize.casing.bosses import BossFaces
 from trunnion.recognize.casing.faces import CasingFaces
@@ -103,7 +105,7 @@ def _rising(faces: CasingFaces, bottom: Sequence[int], of_bosses: set[int]) -> I
 
 
 def _is_foot(faces: CasingFaces, row: int, bottom: set[int]) -> bool:
-    """Return whether a face is a fillet between a bottom and what rises from it: hollow, and with a face beyond that looks elsewhere."""
+    """Return whether a face is a fillet between a bottom and what rises from it: hollow, and a face beyond looks elsewhere."""
     graph = faces.graph
     if row in bottom or graph.surface[row] in ("plane", "cone") or graph.bend[row] >= 0:
         return False
@@ -126,7 +128,7 @@ RISES = 0.7
 
 
 def _is_recess(faces: CasingFaces, row: int) -> bool:
-    """Return whether a turned face is the floor of a milled recess: it does not run round, and faces that are not turned rise all around."""
+    """Return whether a turned face is the floor of a milled recess: it does not run round, and milled walls rise all around it."""
     graph = faces.graph
     if row in faces.holes or not faces.turned[row] or faces.runs_round(row):
         return False
@@ -144,12 +146,22 @@ def _is_recess(faces: CasingFaces, row: int) -> bool:
 
 
 def find_profiles(faces: CasingFaces, taken: set[int]) -> tuple[tuple[int, ...], ...]:
-    """Return the turned faces that are in nothing else yet, in groups that hang together by common edges."""
+    """Return the turned faces that are in nothing else yet, in groups that hang together by common edges.
+
+    What ends in an inner corner with a wall that is not turned is the end of an opening, not turned itself.
+    """
     graph = faces.graph
     free = {r for r in faces.present if faces.turned[r] and r not in taken and r not in faces.holes}
+    walls = set(faces.present) - taken - faces.holes - set(np.flatnonzero(faces.turned).tolist())
+    free = {
+        r
+        for r in free
+        if faces.runs_round(r) or not walls.intersection(graph.neighbours(r, CONCAVE))
+    }
     found = []
+    allowed = frozenset(free)
     while free:
-        group = grown(graph, [min(free)], lambda _edge, _a, b: b in free)
+        group = grown(graph, [min(free)], lambda _edge, _a, b: b in allowed)
         free -= set(group)
         found.append(tuple(sorted(group)))
     return tuple(found)

@@ -15,7 +15,7 @@ from trunnion.units import degrees, rounded
 
 
 def pocket_sizes(faces: CasingFaces, pocket: PocketFaces) -> dict[str, Any]:
-    """Return `sizes` and `attributes` of a pocket: the heights and radii of its bottom's ends, its half angle, and whether it runs round."""
+    """Return `sizes` and `attributes` of a pocket: heights and radii of its bottom's ends, its half angle, whether it runs round."""
     meridian = Meridian.of(faces, pocket.bottom)
     first, last = meridian.ends
     radii = float(meridian.low[0]), float(meridian.high[-1])

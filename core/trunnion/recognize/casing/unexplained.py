@@ -47,7 +47,9 @@ def _sort(faces: CasingFaces, row: int) -> str:
     graph = faces.graph
     if graph.surface[row] not in PLAIN:
         return "casing.free-form"
-    rim = [graph.convexity[e] for e in graph.edges_of[row] if faces.turned[graph.across(e, row)]]
+    rim = [
+        graph.convexity[e] for e in graph.edges_of[row] if faces.runs_round(graph.across(e, row))
+    ]
     if rim and all(c in (CONVEX, SMOOTH) for c in rim):
         return "casing.opening"
     return "casing.unexplained"
