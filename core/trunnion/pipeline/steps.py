@@ -156,9 +156,10 @@ def _on_machined(work: Work) -> Work:
 
 def _size(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "measuring")
-    return Result(
-        session=replace(session, sizes=size_table(_certain(session), context.part.graph()))
-    )
+    found = _certain(session)
+    with context.part.watched(progress):
+        sizes = size_table(found, context.part.graph(), context.part, progress)
+    return Result(session=replace(session, sizes=sizes))
 
 
 @_on_machined
@@ -305,6 +306,7 @@ STEP_TABLE: tuple[Step, ...] = (
         work=_size,
         reads=lambda s, b: (s.recognition,),
         done=lambda s: "size" in s.records,
+        version=2,
     ),
     Step(
         name="blank",
