@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 LINES = 33
 """Lines of a face that are compared with their chords."""
+OPPOSITE = 0.7
+"""Part of the step between two nearest points of the walls that must be square to them: beyond the end of one nothing is opposite."""
 RULED = 0.02
 """mm: walls whose lines stay so near to their chords are ruled: what sizes are given to."""
 
@@ -93,8 +95,12 @@ def thickness(ahead: SurfacePoints, behind: SurfacePoints) -> tuple[Place, Place
     if not len(ahead.point) or not len(behind.point):
         return Place(value=0.0), Place(value=0.0)
     nearest = cKDTree(behind.point).query(ahead.point)[1]
-    away = np.abs(((ahead.point - behind.point[nearest]) * behind.normal[nearest]).sum(axis=1))
-    thin, thick = int(away.argmin()), int(away.argmax())
+    step = ahead.point - behind.point[nearest]
+    away = np.abs((step * behind.normal[nearest]).sum(axis=1))
+    opposite = np.flatnonzero(away > OPPOSITE * np.linalg.norm(step, axis=1))
+    if not len(opposite):
+        return Place(value=0.0), Place(value=0.0)
+    thin, thick = (int(opposite[pick(away[opposite])]) for pick in (np.argmin, np.argmax))
     return tuple(  # type: ignore[return-value]
         Place(value=float(away[k]), at=tuple(ahead.point[k].tolist())) for k in (thin, thick)
     )
