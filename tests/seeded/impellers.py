@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from math import cos, radians, sin
 from random import Random
 from typing import Any
@@ -169,7 +170,7 @@ def _blade(
 
     ends = [start + (1.0 - start) * k / pieces for k in range(pieces + 1)]
     faces = []
-    for low, high in zip(ends, ends[1:], strict=False):
+    for low, high in pairwise(ends):
         rails = {
             (span, side): rail(low, high, span, side)
             for span in (BELOW, ABOVE)
