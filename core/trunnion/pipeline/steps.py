@@ -38,7 +38,7 @@ from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
-from trunnion.recognize.contract import Measuring
+from trunnion.recognize.contract import Measuring, usual_blank
 from trunnion.registry import FAMILIES, FIXES, PART_KINDS, PLANNERS, STRATEGIES
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
@@ -316,6 +316,7 @@ STEP_TABLE: tuple[Step, ...] = (
         reads=lambda s, b: (
             b.part.digest,
             s.recognition.frame if s.recognition else None,
+            usual_blank(s.recognition.family) if s.recognition else "",
             b.shop.digest,
             source_of(s),
         ),

@@ -170,6 +170,19 @@ class Bounding(Protocol):
     smallest: tuple[Smallest, ...]
 
 
+@runtime_checkable
+class Blanked(Protocol):
+    """A family whose parts are usually cut from another blank than a box: its kind, in the words of `blank.kind`."""
+
+    blank: str
+
+
+def usual_blank(family: str) -> str:
+    """Return the kind of blank that parts of a family are usually cut from."""
+    found = _registered(family)
+    return found.blank if isinstance(found, Blanked) else "box"
+
+
 def feature_kinds() -> dict[str, FeatureKind]:
     """Return the kinds of features of all registered families by name; raise `BadCall` where two declare one differently.
 
