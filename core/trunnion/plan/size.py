@@ -49,11 +49,24 @@ SINGULAR = {
     "floors_z": "floor_z",
     "leans": "lean",
     "diameters": "step_diameter",
+    "inner_diameters": "inner_diameter",
+    "outer_diameters": "outer_diameter",
     "step_depths": "step_depth",
 }
 """What one value of a size with several is called."""
 DECIMALS = 4
-UNITS = (("lean", "degrees"), ("angle", "degrees"), ("area", "mm2"), ("ratio", ""))
+UNITS = (
+    ("lean", "degrees"),
+    ("angle", "degrees"),
+    ("tilt", "degrees"),
+    ("theta", "degrees"),
+    ("theta_low", "degrees"),
+    ("theta_high", "degrees"),
+    ("area", "mm2"),
+    ("ratio", ""),
+    ("lobes", ""),
+    ("bosses", ""),
+)
 """Units of sizes whose names end so; all others are lengths."""
 
 

@@ -16,8 +16,8 @@ from trunnion.part.read.part_file import read_part
 from trunnion.plan.casing.bottoms import casing_bottoms
 from trunnion.plan.casing.region_plan import casing_regions
 from trunnion.plan.casing.settings import RegionSettings
-from trunnion.plan.casing.uncut.between import milled_boss, pieces_between
-from trunnion.plan.casing.uncut.inside_boss import pieces_inside
+from trunnion.plan.casing.uncut.boss_pieces import pieces_inside
+from trunnion.plan.casing.uncut.throat import milled_boss, pieces_between
 from trunnion.recognize.casing import CasingFamily, CasingSettings
 from trunnion.settings import choose
 

@@ -112,6 +112,15 @@ def test_the_foot_of_a_round_boss_on_a_cylinder_reaches_as_far_as_the_arcsine_of
     assert (circle.sizes["z_low"], circle.sizes["z_high"]) == (18.0, 32.0)
 
 
+def test_the_wall_under_a_pocket_is_as_thick_as_it_was_made() -> None:
+    (pocket,) = small()[1].of_kind("pocket")
+    assert (pocket.sizes["wall_thickness"], pocket.sizes["wall_thickness_max"]) == (3.0, 3.0)
+    assert (pocket.sizes["z_low"], pocket.sizes["z_high"]) == (5.0, 45.0)
+    (profile,) = small()[1].of_kind("profile")
+    assert profile.sizes["inner_diameters"] == (74.0,)
+    assert profile.sizes["outer_diameters"] == (98.0,)
+
+
 def test_z_goes_up_from_the_lower_end_face_and_x_is_as_in_the_file() -> None:
     frame = small()[1].frame
     assert np.allclose(frame.axes, np.eye(3)) and np.allclose(frame.origin, 0.0)

@@ -44,8 +44,8 @@ def run(options: argparse.Namespace) -> int:
 
     own = {name: d.key for d in declared(RegionSettings) for name in (d.name, d.key)}
     words = words_of(options)
-    chosen = {own[key]: value for key, value in words.items() if key in own}
-    settings = checked(choose(RegionSettings, chosen))
+    own_choices = {own[key]: value for key, value in words.items() if key in own}
+    settings = checked(choose(RegionSettings, own_choices))
     options.words = [f"{key}={value}" for key, value in words.items() if key not in own]
     engine, session, found = casing_session(options)
     graph = engine.context_of(session).part.graph()

@@ -55,7 +55,7 @@ class Gap:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Band:
+class BottomBand:
     """A band between two heights (mm), with its mean radius (mm), the bosses in it and the gaps between them, both in order of angle."""
 
     z: tuple[float, float]
@@ -85,7 +85,9 @@ def widened(box: BossBox, meridian: Meridian, by: float) -> BossBox:
     )
 
 
-def bands_of(meridian: Meridian, boxes: Sequence[BossBox], needed: Needed) -> tuple[Band, ...]:
+def bands_of(
+    meridian: Meridian, boxes: Sequence[BossBox], needed: Needed
+) -> tuple[BottomBand, ...]:
     """Return the bands of a bottom from its lower to its upper end."""
     first, last = meridian.ends
     bounds = [first, last]
@@ -108,11 +110,11 @@ def _apart(values: Sequence[float]) -> list[float]:
 
 def _band(
     meridian: Meridian, boxes: Sequence[BossBox], needed: Needed, low: float, high: float
-) -> Band:
+) -> BottomBand:
     inside = [b for b in boxes if b.z_low < high - SAME_HEIGHT and b.z_high > low + SAME_HEIGHT]
     ends = meridian.radius_inside(np.array([low, high]))
     radius = float(ends.mean())
-    return Band(
+    return BottomBand(
         z=(low, high),
         mean_radius=radius,
         bosses=tuple(sorted({b.boss for b in inside})),

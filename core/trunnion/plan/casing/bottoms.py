@@ -19,7 +19,7 @@ from trunnion.recognize.casing.outline import BossOutline, boss_outline
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class StandingBoss:
+class CasingBoss:
     """A boss with its outline (pieces say their fillets) and its height over the ground (mm), in the casing's frame."""
 
     feature: Feature
@@ -42,7 +42,7 @@ class CasingBottom:
 
     pocket: Feature
     meridian: Meridian
-    bosses: tuple[StandingBoss, ...]
+    bosses: tuple[CasingBoss, ...]
     full_circle: bool
     recess_of: str = ""
 
@@ -66,14 +66,14 @@ def casing_bottoms(found: Recognition, graph: FaceGraph) -> tuple[CasingBottom, 
         )
     hosts = {p.id: _host(faces, p, pockets) for p in pockets}
     meridians = {p.id: Meridian.of(faces, [t - 1 for t in p.with_role(BOTTOM)]) for p in pockets}
-    standing = {p.id: _standing(found, faces, p, meridians[p.id]) for p in pockets}
+    on_bottom = {p.id: _bosses_on(found, faces, p, meridians[p.id]) for p in pockets}
     return tuple(
         CasingBottom(
             pocket=p,
             meridian=meridians[p.id],
             bosses=tuple(
                 sorted(
-                    (b for q in pockets if q is p or hosts[q.id] == p.id for b in standing[q.id]),
+                    (b for q in pockets if q is p or hosts[q.id] == p.id for b in on_bottom[q.id]),
                     key=lambda b: b.id,
                 )
             ),
@@ -95,9 +95,9 @@ def _host(faces: CasingFaces, pocket: Feature, pockets: Sequence[Feature]) -> st
     return ""
 
 
-def _standing(
+def _bosses_on(
     found: Recognition, faces: CasingFaces, pocket: Feature, meridian: Meridian
-) -> list[StandingBoss]:
+) -> list[CasingBoss]:
     made = []
     for feature in found.of_kind(BOSS):
         if feature.attributes.get("on") != pocket.id or not feature.with_role(TOP):
@@ -111,7 +111,7 @@ def _standing(
         outline = with_fillets(faces, boss, boss_outline(faces, boss), meridian)
         height = feature.sizes.get("height", 0.0)
         made.append(
-            StandingBoss(
+            CasingBoss(
                 feature=feature,
                 outline=outline,
                 height=float(height) if isinstance(height, (int, float)) else 0.0,

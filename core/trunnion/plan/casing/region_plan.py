@@ -8,7 +8,7 @@ from typing import Any
 from trunnion.findings import Finding, error, info
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Recognition
-from trunnion.plan.casing.bands import MILL, TURN, Band, BossBox, bands_of, widened
+from trunnion.plan.casing.bands import MILL, TURN, BossBox, BottomBand, bands_of, widened
 from trunnion.plan.casing.bottoms import CasingBottom, casing_bottoms
 from trunnion.plan.casing.gaps import shortest_gap, speed_for
 from trunnion.plan.casing.regions import (
@@ -35,7 +35,7 @@ class BottomRegions:
     by which regions and bosses differ from the bottom. A recess is milled as a whole and has none."""
 
     bottom: CasingBottom
-    bands: tuple[Band, ...] = ()
+    bands: tuple[BottomBand, ...] = ()
     regions: tuple[MachiningRegion, ...] = ()
     around: float = 0.0
     off: float = 0.0
@@ -121,7 +121,7 @@ def _regions(bottom: CasingBottom, settings: RegionSettings, progress: Progress)
 
 def _offered(
     region: MachiningRegion,
-    bands: tuple[Band, ...],
+    bands: tuple[BottomBand, ...],
     height: dict[str, float],
     settings: RegionSettings,
 ) -> MachiningRegion:
@@ -171,7 +171,7 @@ def region_findings(plans: tuple[BottomRegions, ...]) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def _band_dict(band: Band) -> dict[str, Any]:
+def _band_dict(band: BottomBand) -> dict[str, Any]:
     return {
         "z": rounded_pair(band.z),
         "kind": band.kind,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from trunnion.plan.casing.bands import FULL, INTERRUPTED, MILL, TURN, Band
+from trunnion.plan.casing.bands import FULL, INTERRUPTED, MILL, TURN, BottomBand
 from trunnion.recognize.casing.meridian import Meridian
 from trunnion.units import degrees
 
@@ -61,10 +61,12 @@ def rounded_pair(values: tuple[float, float]) -> list[float]:
     return [round(v, 6) + 0.0 for v in values]
 
 
-def merged(bands: Sequence[Band], alike: Callable[[Band, Band], bool]) -> tuple[BandRun, ...]:
+def merged(
+    bands: Sequence[BottomBand], alike: Callable[[BottomBand, BottomBand], bool]
+) -> tuple[BandRun, ...]:
     """Return bands with neighbours joined that are alike."""
     found: list[BandRun] = []
-    before: Band | None = None
+    before: BottomBand | None = None
     for band in bands:
         if before is not None and alike(before, band):
             found[-1] = BandRun(
@@ -78,17 +80,17 @@ def merged(bands: Sequence[Band], alike: Callable[[Band, Band], bool]) -> tuple[
     return tuple(found)
 
 
-def same_bosses(a: Band, b: Band) -> bool:
+def same_bosses(a: BottomBand, b: BottomBand) -> bool:
     """Return whether two bands are of one kind with the same bosses."""
     return (a.kind, a.bosses) == (b.kind, b.bosses)
 
 
-def same_kind(a: Band, b: Band) -> bool:
+def same_kind(a: BottomBand, b: BottomBand) -> bool:
     """Return whether two bands are of one kind."""
     return a.kind == b.kind
 
 
-def without_slivers(bands: Sequence[Band], narrowest: float) -> tuple[Band, ...]:
+def without_slivers(bands: Sequence[BottomBand], narrowest: float) -> tuple[BottomBand, ...]:
     """Return bands without free ones narrower than the insert: they go to the band beside that is turned with interruptions, else to the
     one above, or at the end below, whose bosses and gaps they take."""
     found = list(bands)
@@ -103,7 +105,7 @@ def without_slivers(bands: Sequence[Band], narrowest: float) -> tuple[Band, ...]
     return tuple(found)
 
 
-def regions_of(bands: Sequence[Band], meridian: Meridian) -> tuple[MachiningRegion, ...]:
+def regions_of(bands: Sequence[BottomBand], meridian: Meridian) -> tuple[MachiningRegion, ...]:
     """Return the regions of bands: free bands all round; else one for each longest run of bands over which a gap keeps its neighbours.
 
     A long gap in a band that is milled as a whole may be turned by itself.
@@ -129,7 +131,7 @@ def regions_of(bands: Sequence[Band], meridian: Meridian) -> tuple[MachiningRegi
     )
 
 
-def _of_band(band: Band) -> list[tuple[tuple[str, str, int], MachiningRegion]]:
+def _of_band(band: BottomBand) -> list[tuple[tuple[str, str, int], MachiningRegion]]:
     if not band.bosses:
         return [(("", "", 0), MachiningRegion(z=band.z, kind=TURN, theta=(0.0, FULL)))]
     return [
@@ -147,7 +149,7 @@ def _of_band(band: Band) -> list[tuple[tuple[str, str, int], MachiningRegion]]:
     ]
 
 
-def around_bosses(bands: Sequence[Band], meridian: Meridian) -> float:
+def around_bosses(bands: Sequence[BottomBand], meridian: Meridian) -> float:
     """Return the area (mm2) between the gaps: what bosses, widened, take of the bottom and is milled around them."""
     return sum(
         meridian.area(*b.z, FULL - sum(g.theta[1] - g.theta[0] for g in b.gaps))

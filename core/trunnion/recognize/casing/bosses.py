@@ -74,13 +74,13 @@ def _proposals(faces: CasingFaces) -> Iterator[BossFaces]:
             {
                 g
                 for s in sides
-                for g in faces.stands_on[s]
+                for g in faces.ground_of[s]
                 if all(faces.alignment(t, g) > ALIGNED for t in top)
             }
         )
         if (
             ground
-            and not any(faces.stands_on[t].intersection(ground) for t in top)
+            and not any(faces.ground_of[t].intersection(ground) for t in top)
             and not (faces.turned[row] and all(faces.turned[s] for s in sides))
         ):
             yield BossFaces(top=top, sides=sides, fillets=(), ground=tuple(ground))
@@ -129,7 +129,7 @@ def _sides(faces: CasingFaces, top: tuple[int, ...]) -> tuple[int, ...]:
         if a in top:
             return bool(graph.convexity[edge] != CONCAVE)
         return bool(
-            not faces.stands_on[a] and graph.convexity[edge] != CONCAVE and not faces.is_root(b)
+            not faces.ground_of[a] and graph.convexity[edge] != CONCAVE and not faces.is_root(b)
         )
 
     return tuple(sorted(set(grown(graph, top, falls)) - set(top)))

@@ -73,7 +73,7 @@ class CasingFaces:
         )
 
     @cached_property
-    def stands_on(self) -> tuple[frozenset[int], ...]:
+    def ground_of(self) -> tuple[frozenset[int], ...]:
         """Rows of the turned faces that each face meets in a concave edge, or in a fillet."""
         graph = self.graph
         found: list[set[int]] = [set() for _ in graph.surface]

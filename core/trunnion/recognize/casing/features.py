@@ -111,12 +111,12 @@ def _pockets(faces: CasingFaces, pockets: Sequence[PocketFaces]) -> Iterable[Fea
 def _holes(
     graph: FaceGraph, holes: Sequence[Hole], frame: Frame, others: Sequence[Feature]
 ) -> Iterable[Feature]:
-    def place(hole: Hole) -> tuple[float, ...]:
+    def at_mouth(hole: Hole) -> tuple[float, ...]:
         x, y, z = frame.to_local(hole.mouth).tolist()
         angle = round(degrees(float(np.arctan2(y, x))) % 360.0, DECIMALS) % 360.0
         return round(z, DECIMALS), angle, round(float(np.hypot(x, y)), DECIMALS)
 
-    own = sorted(holes, key=place)
+    own = sorted(holes, key=at_mouth)
     owners: dict[int, str] = {}
     for feature in others:
         for tag in feature.tags:

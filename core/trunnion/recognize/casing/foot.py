@@ -6,7 +6,7 @@ on the ground raised by f, r = rho + f sqrt(1 + k^2), and it touches the ground 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,11 +45,11 @@ def foot_curve(
     down = meridian.foot(points, outline.frame.z, grown)
     found = points - down[:, None] * outline.frame.z
     if grown:
-        found = _touched(found, meridian, grown)
+        found = _toe_points(found, meridian, grown)
     return np.asarray(found)
 
 
-def _touched(centre: Floats, meridian: Meridian, radius: float) -> Floats:
+def _toe_points(centre: Floats, meridian: Meridian, radius: float) -> Floats:
     """Return where balls of a radius above the ground touch it."""
     normal = meridian.normal(centre[:, 2])
     away = centre[:, :2] / np.maximum(np.linalg.norm(centre[:, :2], axis=1), COINCIDENT)[:, None]
@@ -98,7 +98,14 @@ def foot_middle(outline: BossOutline, meridian: Meridian) -> Floats:
     return np.asarray(middle[0] - np.nan_to_num(down[0]) * outline.frame.z)
 
 
-def _extreme(pieces, rough, values, axis, sign, near) -> float:  # type: ignore[no-untyped-def]
+def _extreme(
+    pieces: Sequence[OutlinePiece],
+    rough: Sequence[Floats],
+    values: Callable[[OutlinePiece, Floats], Floats],
+    axis: int,
+    sign: float,
+    near: float,
+) -> float:
     """Return the largest (sign +1) or smallest value along an axis over all pieces, each looked at ever finer around its best point."""
     with_points = [n for n, r in enumerate(rough) if np.isfinite(r[:, axis]).any()]
     best = {n: float(np.nanmax(sign * rough[n][:, axis])) for n in with_points}

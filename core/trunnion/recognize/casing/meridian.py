@@ -173,8 +173,8 @@ def _bent(faces: CasingFaces, row: int) -> list[tuple[float, float, float, float
         r = major + side * np.sqrt(np.maximum(minor**2 - (at - centre[2]) ** 2, 0.0))
     else:
         at = np.linspace(low, high, STEPS + 1)
-        known, place = np.unique(height.round(SAME_HEIGHT), return_inverse=True)
-        mean = np.bincount(place, weights=radius) / np.bincount(place)
+        known, number = np.unique(height.round(SAME_HEIGHT), return_inverse=True)
+        mean = np.bincount(number, weights=radius) / np.bincount(number)
         r = PchipInterpolator(known, mean)(at) if len(known) > 1 else np.full(len(at), mean[0])
     return [
         (float(a), float(b), float(p), float(q))

@@ -140,7 +140,7 @@ def _rim(faces: CasingFaces, boss: BossFaces, z: Floats) -> list[tuple[int, int,
     boss: +1 as its points do. Where a higher boss rises flush, its side counts; where a ring rib cuts the boss, the row is -1."""
     graph = faces.graph
     caps = set(boss.top) | {
-        s for s in boss.sides if not faces.stands_on[s] and _is_cap(graph, s, z)
+        s for s in boss.sides if not faces.ground_of[s] and _is_cap(graph, s, z)
     }
     found = []
     for cap in sorted(caps):

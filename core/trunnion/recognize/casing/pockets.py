@@ -77,7 +77,7 @@ def _pocket(
 ) -> PocketFaces:
     own = set(bottom)
     numbers = tuple(n for n, boss in enumerate(bosses) if own & set(boss.ground))
-    restrict = {s for n in numbers for s in bosses[n].sides if own & faces.stands_on[s]}
+    restrict = {s for n in numbers for s in bosses[n].sides if own & faces.ground_of[s]}
     side = set(_rising(faces, bottom, of_bosses))
     return PocketFaces(
         bottom=bottom,

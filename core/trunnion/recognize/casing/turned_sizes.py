@@ -11,11 +11,18 @@ from trunnion.model.feature import Size
 from trunnion.recognize.casing.faces import CasingFaces
 from trunnion.recognize.casing.meridian import Meridian
 from trunnion.recognize.casing.pockets import PocketFaces
+from trunnion.tolerance import SLIVER
 from trunnion.units import degrees, rounded
+
+FACING = 0.3
+"""Cosine between a normal and the direction to the axis from which on a face is the other side of a wall, not a flange or a rim."""
+HEIGHTS = 101
+"""Heights at which the thickness of a wall is looked at: every millimetre or two of a pocket."""
 
 
 def pocket_sizes(faces: CasingFaces, pocket: PocketFaces) -> dict[str, Any]:
-    """Return `sizes` and `attributes` of a pocket: heights and radii of its bottom's ends, its half angle, whether it runs round."""
+    """Return `sizes` and `attributes` of a pocket: heights and radii of its bottom's ends, its half angle, how thick the wall under it is,
+    whether it runs round."""
     meridian = Meridian.of(faces, pocket.bottom)
     first, last = meridian.ends
     radii = float(meridian.low[0]), float(meridian.high[-1])
@@ -26,12 +33,42 @@ def pocket_sizes(faces: CasingFaces, pocket: PocketFaces) -> dict[str, Any]:
         "radius_high": rounded(radii[1]),
         "half_angle": rounded(degrees(float(np.arctan2(radii[1] - radii[0], last - first)))),
         "bosses": len(pocket.bosses),
+        **_wall(faces, meridian),
     }
     attributes: dict[str, Size] = {
         "where": "outside" if meridian.outward > 0.0 else "inside",
         "full_circle": any(faces.runs_round(r) for r in pocket.bottom),
     }
     return {"sizes": sizes, "attributes": attributes}
+
+
+def _wall(faces: CasingFaces, meridian: Meridian) -> dict[str, Size]:
+    """Return the smallest and the largest thickness of the wall under a bottom, mm: across it, to the turned faces of the other side.
+
+    Nothing where no such face lies behind all of it; holes through the wall and what stands on its other side don't count.
+    """
+    graph = faces.graph
+    behind = [
+        Meridian.of(faces, [r])
+        for r in np.flatnonzero(faces.turned & ~faces.across).tolist()
+        if r not in faces.holes and faces.meridian_normals[r][0] * meridian.outward < -FACING
+        if graph.box_high[r, 2] > meridian.ends[0] and graph.box_low[r, 2] < meridian.ends[1]
+    ]
+    first, last = meridian.ends
+    at = first + (last - first) * (np.arange(HEIGHTS) + 0.5) / HEIGHTS
+    radius = meridian.radius(at)
+    gap = np.full(HEIGHTS, np.inf)
+    for other in behind:
+        inside = (at >= other.ends[0]) & (at <= other.ends[1])
+        apart = meridian.outward * (radius - other.radius(at))
+        gap = np.where(inside & (apart > SLIVER), np.minimum(gap, apart), gap)
+    if not np.isfinite(gap).any():
+        return {}
+    thick = (gap * np.abs(meridian.normal(at)[:, 0]))[np.isfinite(gap)]
+    return {
+        "wall_thickness": rounded(float(thick.min())),
+        "wall_thickness_max": rounded(float(thick.max())),
+    }
 
 
 def profile_sizes(faces: CasingFaces, rows: Sequence[int]) -> dict[str, Any]:

@@ -11,10 +11,10 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Feature, Recognition
 from trunnion.plan.casing.bottoms import CasingBottom, casing_bottoms
-from trunnion.plan.casing.uncut.beside_wall import milled_wall
-from trunnion.plan.casing.uncut.between import Milled, milled_boss, pieces_between
-from trunnion.plan.casing.uncut.inside_boss import pieces_inside
+from trunnion.plan.casing.uncut.boss_pieces import pieces_inside
 from trunnion.plan.casing.uncut.piece import BESIDE, UncutPiece
+from trunnion.plan.casing.uncut.pocket_side import milled_wall
+from trunnion.plan.casing.uncut.throat import Milled, milled_boss, pieces_between
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.casing.kinds import SIDE
 from trunnion.tolerance import ANGLE, FITTED

@@ -22,8 +22,8 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.region import Region
-from trunnion.plan.casing.bottoms import StandingBoss
-from trunnion.plan.casing.uncut.inside_boss import outline_region
+from trunnion.plan.casing.bottoms import CasingBoss
+from trunnion.plan.casing.uncut.boss_pieces import outline_region
 from trunnion.plan.casing.uncut.piece import BETWEEN, UncutPiece
 from trunnion.recognize.casing.foot import foot_curve
 from trunnion.recognize.casing.meridian import Meridian
@@ -57,7 +57,7 @@ class Milled:
         return np.asarray(self.frame.to_local(points)[..., :2])
 
 
-def milled_boss(boss: StandingBoss, meridian: Meridian, radius: float, allowance: float) -> Milled:
+def milled_boss(boss: CasingBoss, meridian: Meridian, radius: float, allowance: float) -> Milled:
     """Return a boss as one side of a gap for a cutter of a radius with an allowance, mm."""
     area = outline_region(boss.outline)
     around = area.offset(radius + allowance)
@@ -114,7 +114,7 @@ def free_positions(side: Milled, other: Milled, keep_off: float) -> Bools:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class GroundGrid:
+class BottomGrid:
     """Cells of ground around two feet: angles (m,) and heights (n,), and which cells (m, n) lie between the feet."""
 
     theta: Floats
@@ -123,7 +123,7 @@ class GroundGrid:
     meridian: Meridian
 
     @staticmethod
-    def of(feet: tuple[Floats, Floats], meridian: Meridian) -> GroundGrid:
+    def of(feet: tuple[Floats, Floats], meridian: Meridian) -> BottomGrid:
         """Return the cells within the convex hull of two feet on the unrolled ground."""
         both = np.vstack(feet)
         zero = float(np.arctan2(both[:, 1].mean(), both[:, 0].mean()))
@@ -134,7 +134,7 @@ class GroundGrid:
         hull = shapely.MultiPoint(np.column_stack([zero + angle, both[:, 2]])).convex_hull
         t, h = np.meshgrid(theta, z, indexing="ij")
         shapely.prepare(hull)
-        return GroundGrid(
+        return BottomGrid(
             theta=theta, z=z, between=shapely.contains_xy(hull, t, h), meridian=meridian
         )
 
@@ -160,7 +160,7 @@ def pieces_between(
 ) -> tuple[UncutPiece, ...]:
     """Return what a cutter of a diameter leaves between two sides of a gap: the pieces that touch both."""
     radius = 0.5 * diameter
-    grid = GroundGrid.of((a.foot, b.foot), meridian)
+    grid = BottomGrid.of((a.foot, b.foot), meridian)
     if not grid.between.any():
         return ()
     keep = radius + allowance
@@ -191,12 +191,12 @@ def pieces_between(
     floor[grid.between], away = left(ground[grid.between])
     labels, count = ndimage.label(floor > 0.0)
     near = 1.5 * CELL + allowance
-    touched = [set(labels[grid.between][d < near].tolist()) for d in away]
+    at_both = [set(labels[grid.between][d < near].tolist()) for d in away]
     height = min(a.height, b.height)
     layers = max(1, int(np.ceil(height / LAYER)))
     clears = max(0.0, _clear(a, b) - 2.0 * allowance) if count else 0.0
     made = []
-    for k in sorted(set(range(1, count + 1)) & touched[0] & touched[1]):
+    for k in sorted(set(range(1, count + 1)) & at_both[0] & at_both[1]):
         mine = ndimage.binary_dilation(labels == k) & grid.between
         on_floor = np.clip(floor[mine] / CELL + 0.5, 0.0, 1.0)
         row = np.nonzero(mine)[1]
@@ -230,7 +230,7 @@ def _clear(a: Milled, b: Milled) -> float:
     )
 
 
-def _boundary(grid: GroundGrid, inside: Floats) -> Floats:
+def _boundary(grid: BottomGrid, inside: Floats) -> Floats:
     """Return the outline (k, 3) of the largest area on the ground where a field (m, n) is positive."""
     padded = np.pad(inside, 1, constant_values=-CELL)
     lines: list[Any] = list(contourpy.contour_generator(z=padded).lines(0.0))
@@ -250,9 +250,9 @@ def _end_lines(side: Milled, free: Bools, height: float) -> tuple[tuple[Floats, 
     lines = []
     for n in ends:
         point = side.axis[n]
-        touch = shapely.get_coordinates(
+        contact = shapely.get_coordinates(
             shapely.shortest_line(polygon.exterior, shapely.Point(point))
         )[0]
-        top = side.frame.to_world(np.array([touch[0], touch[1], 0.0]))
+        top = side.frame.to_world(np.array([contact[0], contact[1], 0.0]))
         lines.append((top - height * side.frame.z, top))
     return tuple(lines)

@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.plan.casing.bottoms import StandingBoss
+from trunnion.plan.casing.bottoms import CasingBoss
 from trunnion.plan.casing.uncut.piece import INSIDE, UncutPiece
 from trunnion.recognize.casing.meridian import Meridian
 from trunnion.recognize.casing.outline import BossOutline
@@ -41,20 +41,20 @@ def outline_region(outline: BossOutline) -> Region:
     return Region.of([Curve(np.array(points), np.array(bulges), True)])
 
 
-def left_inside(region: Region, radius: float) -> Region:
+def uncut_of(region: Region, radius: float) -> Region:
     """Return what a cutter of a radius leaves of the surroundings of a region that it goes round."""
     closed = region.offset(radius).holes_filled().offset(-radius)
     return closed.minus(region)
 
 
 def pieces_inside(
-    boss: StandingBoss, meridian: Meridian, diameter: float, allowance: float = 0.0
+    boss: CasingBoss, meridian: Meridian, diameter: float, allowance: float = 0.0
 ) -> tuple[UncutPiece, ...]:
     """Return the pieces of class 1 of a boss for a cutter of a diameter with an allowance on the sides, mm."""
     region = outline_region(boss.outline)
     if allowance:
         region = region.offset(allowance)
-    left = left_inside(region, 0.5 * diameter)
+    left = uncut_of(region, 0.5 * diameter)
     return tuple(
         UncutPiece(
             number=INSIDE,
@@ -86,7 +86,7 @@ def _largest(region: Region, part: Region, radius: float) -> float:
     low, high = 0.0, radius
     for _ in range(STEPS):
         middle = 0.5 * (low + high)
-        if left_inside(region, middle).intersect(part).area > LEAST:
+        if uncut_of(region, middle).intersect(part).area > LEAST:
             high = middle
         else:
             low = middle

@@ -12,7 +12,7 @@ import shapely
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.plan.casing.uncut.between import CHORD, Milled, _dense
+from trunnion.plan.casing.uncut.throat import CHORD, Milled, _dense
 from trunnion.recognize.casing.meridian import Meridian
 
 BEYOND = 5.0
