@@ -68,6 +68,16 @@ def bowl_block(
     return block().cut(space).val().wrapped
 
 
+@cache
+def hill_block(radius: float = 60.0, depth: float = 7.0, corner: float = 8.0) -> Any:
+    """Return a block with a pocket of upright walls over a floor that is part of a cylinder along y, highest in the middle: walls at both
+    ends of it stand on floor that falls towards them."""
+    top = BLOCK[2] - depth
+    drum = cq.Workplane("XZ", origin=(BLOCK[0] / 2, BLOCK[1], top - radius)).circle(radius)
+    space = upright_space(corner).translate((0, 0, top - 6.0)).cut(drum.extrude(BLOCK[1]))
+    return block().cut(space).val().wrapped
+
+
 def random_block(seed: int) -> Any:
     """Return the block of a seed with a pocket that leans away, of random lean, depth, corner and fillet."""
     draw = Random(f"leaning {seed}")

@@ -25,6 +25,7 @@ SHAPES = {
     "away": leaning_pockets.leaning_block,
     "over": leaning_pockets.mixed_block,
     "bowl": leaning_pockets.bowl_block,
+    "hill": leaning_pockets.hill_block,
     "sharp bowl": partial(leaning_pockets.bowl_block, fillet=0.0),
 }
 
@@ -160,6 +161,12 @@ def test_a_sharp_foot_of_a_curved_floor_gets_an_end_sharper_than_any_ball() -> N
     assert {o.tool.form for o in operations("bowl").values() if o.kind == "curved_floor"} == {
         "ball"
     }
+
+
+def test_a_thinner_cutter_comes_after_a_sharp_end_that_a_falling_floor_keeps_off_the_foot() -> None:
+    first, rest = (o for o in operations("hill").values() if o.kind == "leaning_side")
+    assert rest.choices["surface.earlier"] == first.tool.name
+    assert first.tool.corner_radius == 0.0 and rest.tool.diameter < first.tool.diameter
 
 
 def test_a_typical_plan_without_layers_refuses_leaning_walls() -> None:

@@ -87,7 +87,12 @@ def _shortest(ends: Ints, size: Floats, limit: float, fixed: Bools) -> tuple[Int
     first = np.unique(goes, return_index=True)[1]
     goes, onto, at = goes[first], onto[first], rows[np.flatnonzero(free)[first] // 2]
     # Of about the same length in no order that follows the rows: along a strip only one would win a round.
-    order = np.lexsort((goes * SCATTER % SCATTER_OVER, np.ceil(np.log2(size[at]))))
+    order = np.lexsort(
+        (
+            goes * SCATTER % SCATTER_OVER,
+            np.ceil(np.log2(np.maximum(size[at], np.finfo(float).tiny))),
+        )
+    )
     return goes[order], onto[order]
 
 

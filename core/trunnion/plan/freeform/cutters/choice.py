@@ -83,7 +83,7 @@ def cutter_for(
     """Return the largest cutter, by a size of cutters, that reaches at least a share of what any one reaches of samples, the shortest of
     its size; or the one that is `wanted`.
 
-    What it misses goes to the largest smaller one that reaches nearly all any does of that.
+    What it misses goes to the largest smaller one, or else to one of less diameter, that reaches nearly all any does of that.
     """
     ranked = sorted(tools, key=lambda t: (-size(t), -t.diameter, depth_reached(t), t.name))
     reach: dict[str, Bools] = {}
@@ -109,7 +109,9 @@ def cutter_for(
     missed = reachable & ~reach[tool.name]
     if missed.sum() <= NEGLIGIBLE * total:
         missed = none
+    # Where none of a smaller size is there, as after a sharp end, a thinner one may still get in between faces.
     smaller = [t for t in ranked if size(t) < size(tool)]
+    smaller += [t for t in ranked if size(t) >= size(tool) and t.diameter < tool.diameter]
     rest = (
         next((t for t in smaller if (reach[t.name] & missed).sum() >= share * missed.sum()), None)
         if missed.any()

@@ -144,8 +144,11 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     )
     tree = cKDTree(sheet.points[ends[edge[row], 0]] + share[:, None] * run[edge[row]])
     # The rounder side holds no farther than the flatter one's stepovers are wide.
-    density, middle = lengths / size, 0.5 * (sheet.points[ends[:, 0]] + sheet.points[ends[:, 1]])
-    limit = 0.5 * size + PAST / density
+    middle = 0.5 * (sheet.points[ends[:, 0]] + sheet.points[ends[:, 1]])
+    # An edge without length lies nowhere near: it has no stepovers.
+    long = size > 0.0
+    density = np.divide(lengths, size, out=np.full(len(size), np.inf), where=long)
+    limit = np.where(long, 0.5 * size + PAST / density, -np.inf)
     nearest = tree.query(middle, distance_upper_bound=np.nextafter(limit.max(), np.inf))[0]
     near = np.flatnonzero(nearest <= limit)
     position = (
