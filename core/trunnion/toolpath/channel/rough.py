@@ -201,9 +201,7 @@ def _lines(
     return found
 
 
-def _line(
-    columns: Columns, low: Floats, high: Floats, share: float, s: float, rows: slice
-) -> Pass:
+def _line(columns: Columns, low: Floats, high: Floats, share: float, s: float, rows: slice) -> Pass:
     v = (1.0 - s) * low + s * high
     tip, axis = columns.at(v, _rise(columns, v, share))
     return Pass(tip=tip[rows], axis=axis[rows], normal=axis[rows])
@@ -230,14 +228,10 @@ def _far(one: Pass, line: Pass) -> float:
 
 def _clear(line: Pass, query: ClearanceQuery) -> list[Pass]:
     """Return the pieces of a pass whose moves are clear."""
-    clear = query(
-        line.tip[1:], line.axis[1:], start_tip=line.tip[:-1], start_axis=line.axis[:-1]
-    )
+    clear = query(line.tip[1:], line.axis[1:], start_tip=line.tip[:-1], start_axis=line.axis[:-1])
     edges = np.flatnonzero(np.diff(np.concatenate([[False], clear, [False]]).astype(np.int8)))
     return [
-        line.of(slice(a, b + 1))
-        for a, b in edges.reshape(-1, 2).tolist()
-        if b + 1 - a >= SHORT
+        line.of(slice(a, b + 1)) for a, b in edges.reshape(-1, 2).tolist() if b + 1 - a >= SHORT
     ]
 
 

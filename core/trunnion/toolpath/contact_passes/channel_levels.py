@@ -187,10 +187,7 @@ def _axes(
         axis=-1,
     )
     fine = np.stack(
-        [
-            np.stack([np.interp(v, few_v, fine[r, :, k]) for r in range(len(u))])
-            for k in range(3)
-        ],
+        [np.stack([np.interp(v, few_v, fine[r, :, k]) for r in range(len(u))]) for k in range(3)],
         axis=-1,
     )
     return np.asarray(fine / np.linalg.norm(fine, axis=-1, keepdims=True))

@@ -58,9 +58,7 @@ def orbited(passes: Sequence[Pass], parameters: OrbitParameters) -> Toolpath:
     return blocks.path()
 
 
-def copied(
-    path: Toolpath, copies: Sequence[float], sphere: ClearanceSphere
-) -> Toolpath:
+def copied(path: Toolpath, copies: Sequence[float], sphere: ClearanceSphere) -> Toolpath:
     """Return a path and its copies turned about z by angles (rad), one after the other, led round the sphere from each to the next one,
     from an upright tool over the sphere and back to it."""
     if not len(path):
