@@ -37,9 +37,7 @@ class BlankDepth:
         radius = np.arange(0.0, float(np.abs([*low[:2], *high[:2]]).max()) + BESIDE + CELL, CELL)
         height = np.arange(float(low[2]) - BESIDE, float(high[2]) + BESIDE + CELL, CELL)
         grid = np.stack(np.meshgrid(radius, height, indexing="ij"), axis=-1).reshape(-1, 2)
-        seen = [
-            blank.inward(blank.own(placed(grid, np.full(len(grid), a)), rotor)) for a in ANGLES
-        ]
+        seen = [blank.inward(blank.own(placed(grid, np.full(len(grid), a)), rotor)) for a in ANGLES]
         table = None
         if max(float(np.abs(s - seen[0]).max()) for s in seen) < tolerance.SEW:
             table = RegularGridInterpolator(

@@ -16,19 +16,28 @@ from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.channel.blank_depth import BlankDepth
 from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.channel.gap import Gap
-from trunnion.plan.channel.wheel import BLADE, HUB, ROOT, SPLITTER, TIP, WALLS, EDGES, Wheel, wheel_of
+from trunnion.plan.channel.wheel import (
+    BLADE,
+    EDGES,
+    HUB,
+    ROOT,
+    SPLITTER,
+    TIP,
+    WALLS,
+    Wheel,
+    wheel_of,
+)
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
 from trunnion.progress import Progress
 from trunnion.settings import digest
 
+
 def rotor_setup(setup: Setup, rotor: Frame, blank: Blank) -> Setup:
     """Return a setup as seen in the rotor's frame, its clearance as far above blank and fixtures as the setup's own."""
     turned = replace(setup, frame=rotor)
-    return replace(
-        turned, clearance=turned.top(blank) + setup.clearance - setup.top(blank)
-    )
+    return replace(turned, clearance=turned.top(blank) + setup.clearance - setup.top(blank))
 
 
 def channel_driven(
@@ -77,7 +86,8 @@ def channel_driven(
     )
     drive = ChannelDrive(
         surface=surface,
-        gaps=gaps if named else (),
+        gaps=gaps,
+        in_gaps=named,
         copies=wheel.copies,
         blank=blank,
         inward=scene.once(("blank depth",), lambda: BlankDepth.of(blank, rotor)),

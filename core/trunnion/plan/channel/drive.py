@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from trunnion.geometry.arrays import Floats
 from trunnion.model.blank import Blank
 from trunnion.plan.channel.gap import Gap
@@ -19,7 +21,7 @@ class ChannelDrive:
     """Gaps between the blades of one period, and the surfaces of it.
 
     `surface` has what any surface strategy needs; its `faces` are those of the period that the operation finishes (none where it roughs).
-    `gaps`: one for each gap of the period. `copies` (rad): the turns about the axis that bring the period to all of its places, the first
+    `gaps`: one for each gap of the period; `in_gaps` whether the operation goes through them. `copies` (rad): the turns about the axis that bring the period to all of its places, the first
     one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the shroud and towards the hub, where passes begin and
     end. `inward` says how deep below the blank's surface points (k, 3) lie, negative outside. `blank` is the blank itself.
     """
@@ -29,10 +31,31 @@ class ChannelDrive:
     copies: tuple[float, ...]
     blank: Blank
     inward: Callable[[Floats], Floats]
+    in_gaps: bool
     tips: tuple[int, ...] = ()
     roots: tuple[int, ...] = ()
 
     @property
     def is_empty(self) -> bool:
         """Whether there is nothing to cut."""
-        return not self.gaps and not self.surface.faces
+        return not self.in_gaps and not self.surface.faces
+
+    def rulings(self, points: Floats) -> Floats:
+        """Return unit directions (k, 3) from hub to shroud at points (k, 3), along the rulings of the walls beside them."""
+        from trunnion.plan.channel.meridian import cylindrical
+
+        rz, angle = cylindrical(points)
+        uw = self.gaps[0].meridian.coordinates(rz)
+        u, w = uw[:, 0], np.clip(uw[:, 1], 0.0, 1.0)
+        best, found = np.full(len(points), np.inf), np.zeros((len(points), 3))
+        for gap in self.gaps:
+            low, high = gap.lower.at(u, w), gap.upper.at(u, w)
+            middle = 0.5 * (low + high)
+            near = middle + np.mod(angle - middle + np.pi, 2.0 * np.pi) - np.pi
+            v = (near - low) / (high - low)
+            off = np.maximum(np.maximum(-v, v - 1.0), 0.0)
+            rows = np.flatnonzero(off < best)
+            best[rows] = off[rows]
+            # What lies in another period is turned there and back: the angle between is all that counts.
+            found[rows] = gap.rulings(u[rows], np.clip(v[rows], 0.0, 1.0))
+        return found

@@ -43,9 +43,7 @@ class Camber:
 
     def turned(self, angle: float) -> Camber:
         """Return the camber of the blade turned about the axis by an angle, rad."""
-        return Camber(
-            angle=RegularGridInterpolator(self.angle.grid, self.angle.values + angle)
-        )
+        return Camber(angle=RegularGridInterpolator(self.angle.grid, self.angle.values + angle))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -126,9 +124,7 @@ def _carried_on(at: Floats, row: Floats, tail: int) -> Floats:
     return out
 
 
-def gaps_of(
-    cambers: Sequence[Camber], meridian: Meridian
-) -> tuple[Gap, ...]:
+def gaps_of(cambers: Sequence[Camber], meridian: Meridian) -> tuple[Gap, ...]:
     """Return the gaps between blades, each from one to the next around the axis, in the order of the cambers, which go once around."""
     found = []
     for lower, upper in zip(cambers, [*cambers[1:], cambers[0]], strict=True):

@@ -108,9 +108,7 @@ def _period(blades: Sequence[Feature], angles: Floats, main: int) -> tuple[int, 
     return total, 1
 
 
-def _meridian(
-    skin: Skin, hub: tuple[int, ...], tips: tuple[int, ...], blade: Feature
-) -> Meridian:
+def _meridian(skin: Skin, hub: tuple[int, ...], tips: tuple[int, ...], blade: Feature) -> Meridian:
     def places(tags: tuple[int, ...]) -> Floats:
         return cylindrical(skin.points[np.unique(skin.triangles[skin.of(tags)])])[0]
 

@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Floats
 from trunnion.model.motion.toolpath import Toolpath
-from trunnion.model.operation import CuttingData
+from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.channel.drive import ChannelDrive
@@ -30,14 +30,10 @@ from trunnion.toolpath.motion.reorient import clearance_sphere
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import trimmed
 
-NEAR = 4.0
-"""Stepovers: a pass that begins no farther from the end of the one before is reached straight."""
 LINK_TURN = math.radians(40.0)
 """Largest turn of the axis on a link in the air."""
 SHORT = 3
 """A piece of a pass with fewer poses than this cuts nothing worth the way."""
-LINK_FEED = 2.0
-"""Times the feed: in the air beside the blank."""
 
 
 @settings("channel.rough")
@@ -55,11 +51,9 @@ class ChannelRoughSettings:
 
 
 def full_slot(
-    tool: Tool, data: CuttingData, settings: ChannelRoughSettings, before: object
-) -> object:
+    tool: Tool, data: CuttingData, settings: ChannelRoughSettings, before: Operation | None
+) -> Engagement:
     """Return the largest engagement: the first pass of a layer is a slot as wide as the cutter."""
-    from trunnion.model.operation import Engagement
-
     return Engagement(
         width=tool.diameter,
         depth=data.depth,
@@ -114,17 +108,17 @@ def rough(
             body_outside(tool, drive.inward),
             share.part(0.0, 0.7),
         )
-        passes, left = layers(columns, tool, data, query, share.part(0.7, 1.0))
+        passes, groups, left = layers(columns, tool, data, query, share.part(0.7, 1.0))
         parameters = OrbitParameters(
-            near=NEAR * data.width,
+            near=2.0 * deepest,
             turn=LINK_TURN,
             feed=data.feed,
-            link_feed=min(LINK_FEED * data.feed, data.feed + 4000.0),
+            link_feed=data.feed,
             sphere=sphere,
             retreat=_retreat(deepest + settings.safety),
             query=query,
         )
-        paths.append(orbited(passes, parameters))
+        paths.append(orbited(passes, parameters, groups))
         findings += _left(left, surface.feature, tool)
     whole = Toolpath.join([p for p in paths if len(p)])
     return Planned(path=copied(whole, drive.copies, sphere), findings=tuple(findings))
@@ -136,13 +130,14 @@ def layers(
     data: CuttingData,
     query: ClearanceQuery,
     progress: Progress = NO_PROGRESS,
-) -> tuple[list[Pass], float]:
-    """Return the passes of all layers from shroud to hub, to and fro, and the share of the hub's places along u that stay out of reach.
+) -> tuple[list[Pass], list[int], float]:
+    """Return the passes of all layers from shroud to hub, to and fro, the layer of each, and the share of the hub's places along u that stay out of reach.
 
     Layers are no deeper than the data's depth, passes no farther apart than their width, at the widest place of each.
     """
     count = max(1, math.ceil(float(columns.height.max()) / data.depth))
     passes: list[Pass] = []
+    groups: list[int] = []
     reached = np.ones(len(columns.u), dtype=bool)
     for k in range(1, count + 1):
         progress.at(k / count, "Laying layers between hub and shroud")
@@ -157,7 +152,8 @@ def layers(
                 ):
                     line = line.reversed()
                 passes += _clear(line, query)
-    return passes, 1.0 - float(reached.mean())
+                groups += [k] * (len(passes) - len(groups))
+    return passes, groups, 1.0 - float(reached.mean())
 
 
 def widest(tool: Tool, height: float) -> float:
@@ -201,9 +197,7 @@ def _lines(
     return found
 
 
-def _line(
-    columns: Columns, low: Floats, high: Floats, share: float, s: float, rows: slice
-) -> Pass:
+def _line(columns: Columns, low: Floats, high: Floats, share: float, s: float, rows: slice) -> Pass:
     v = (1.0 - s) * low + s * high
     tip, axis = columns.at(v, _rise(columns, v, share))
     return Pass(tip=tip[rows], axis=axis[rows], normal=axis[rows])
@@ -230,14 +224,10 @@ def _far(one: Pass, line: Pass) -> float:
 
 def _clear(line: Pass, query: ClearanceQuery) -> list[Pass]:
     """Return the pieces of a pass whose moves are clear."""
-    clear = query(
-        line.tip[1:], line.axis[1:], start_tip=line.tip[:-1], start_axis=line.axis[:-1]
-    )
+    clear = query(line.tip[1:], line.axis[1:], start_tip=line.tip[:-1], start_axis=line.axis[:-1])
     edges = np.flatnonzero(np.diff(np.concatenate([[False], clear, [False]]).astype(np.int8)))
     return [
-        line.of(slice(a, b + 1))
-        for a, b in edges.reshape(-1, 2).tolist()
-        if b + 1 - a >= SHORT
+        line.of(slice(a, b + 1)) for a, b in edges.reshape(-1, 2).tolist() if b + 1 - a >= SHORT
     ]
 
 

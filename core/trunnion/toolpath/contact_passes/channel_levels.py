@@ -20,7 +20,7 @@ from trunnion.plan.channel.gap import Gap
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.progress import NO_PROGRESS, Progress
-from trunnion.toolpath.contact_passes.open_axes import open_axes
+from trunnion.toolpath.contact_passes.open_axes import OpenAxes, open_axes
 from trunnion.toolpath.contact_passes.stock_clearance import grown
 
 COARSE_U, COARSE_V = 15, 9
@@ -42,15 +42,26 @@ EVEN = 1.0
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Columns:
-    """Columns over places of a gap: u (nu,), v (nv,); root (nu, nv, 3) the tip at the hub's allowance, axis (nu, nv, 3); foot (nu, nv) mm
+    """Columns over places of a gap: u (nu,), v (nv,); point, normal (nu, nv, 3) of the hub there; root (nu, nv, 3) the tip at the hub's allowance, axis (nu, nv, 3); foot (nu, nv) mm
     above it where the column is free, infinite where it never is; height (nu, nv) mm from hub to shroud."""
 
     u: Floats
     v: Floats
+    point: Floats
+    normal: Floats
     root: Floats
     axis: Floats
     foot: Floats
     height: Floats
+
+    def axes(self) -> OpenAxes:
+        """Return the axes of all columns at the places of the hub that they stand over."""
+        return OpenAxes(
+            point=self.point.reshape(-1, 3),
+            normal=self.normal.reshape(-1, 3),
+            axis=self.axis.reshape(-1, 3),
+            free=np.ones(self.axis[..., 0].size, dtype=bool),
+        )
 
     def at(self, v: Floats, rise: Floats) -> tuple[Floats, Floats]:
         """Return tips and axes (nu, 3), one for each u, at places v (nu,) across and rises (nu,) mm above the root: between columns."""
@@ -140,6 +151,8 @@ def columns_of(
     return Columns(
         u=u,
         v=v,
+        point=point.reshape(*shape, 3),
+        normal=normal.reshape(*shape, 3),
         root=root.reshape(*shape, 3),
         axis=axis,
         foot=foot.reshape(shape),
@@ -187,10 +200,7 @@ def _axes(
         axis=-1,
     )
     fine = np.stack(
-        [
-            np.stack([np.interp(v, few_v, fine[r, :, k]) for r in range(len(u))])
-            for k in range(3)
-        ],
+        [np.stack([np.interp(v, few_v, fine[r, :, k]) for r in range(len(u))]) for k in range(3)],
         axis=-1,
     )
     return np.asarray(fine / np.linalg.norm(fine, axis=-1, keepdims=True))

@@ -143,9 +143,7 @@ def _around(wanted: Floats, normal: Floats, lattice: Floats) -> Floats:
     lean /= np.linalg.norm(lean, axis=1, keepdims=True)
     across = np.cross(wanted, lean)
     turn = np.linalg.norm(lattice, axis=1)
-    share = np.divide(
-        lattice, turn[:, None], out=np.zeros_like(lattice), where=turn[:, None] > 0.0
-    )
+    share = np.divide(lattice, turn[:, None], out=np.zeros_like(lattice), where=turn[:, None] > 0.0)
     side = share[None, :, :1] * lean[:, None] + share[None, :, 1:] * across[:, None]
     return np.asarray(
         np.cos(turn)[None, :, None] * wanted[:, None] + np.sin(turn)[None, :, None] * side
