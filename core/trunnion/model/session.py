@@ -42,7 +42,10 @@ class PartInfo:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SizeEntry:
-    """One line of the size table. `at` is a point of the part (x, y, z) or empty."""
+    """One line of the size table. `at` is a point of the part (x, y, z) or empty; a distance is measured from there to the point `to`.
+
+    A line of the part that is as long as the value has the points of its `curve`, radius and height in turn.
+    """
 
     name: str
     value: float
@@ -50,10 +53,12 @@ class SizeEntry:
     feature: str
     faces: tuple[int, ...] = ()
     at: tuple[float, ...] = ()
+    to: tuple[float, ...] = added((), written=False)
+    curve: tuple[float, ...] = added((), written=False)
 
     def as_dict(self) -> dict[str, object]:
         """Return the entry as the JSON that other programs rely on."""
-        return {
+        entry: dict[str, object] = {
             "name": self.name,
             "value": self.value,
             "unit": self.unit,
@@ -61,6 +66,12 @@ class SizeEntry:
             "faces": list(self.faces),
             "at": list(self.at),
         }
+        if self.to:
+            entry["to"] = list(self.to)
+        if self.curve:
+            pairs = zip(self.curve[::2], self.curve[1::2], strict=True)
+            entry["curve"] = [list(pair) for pair in pairs]
+        return entry
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

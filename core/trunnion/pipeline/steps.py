@@ -38,7 +38,7 @@ from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
-from trunnion.recognize.contract import Measuring
+from trunnion.recognize.contract import Measuring, usual_blank
 from trunnion.registry import FAMILIES, FIXES, PART_KINDS, PLANNERS, STRATEGIES
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
@@ -156,9 +156,10 @@ def _on_machined(work: Work) -> Work:
 
 def _size(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "measuring")
-    return Result(
-        session=replace(session, sizes=size_table(_certain(session), context.part.graph()))
-    )
+    found = _certain(session)
+    with context.part.watched(progress):
+        sizes = size_table(found, context.part.graph(), context.part, progress)
+    return Result(session=replace(session, sizes=sizes))
 
 
 @_on_machined
@@ -305,6 +306,7 @@ STEP_TABLE: tuple[Step, ...] = (
         work=_size,
         reads=lambda s, b: (s.recognition,),
         done=lambda s: "size" in s.records,
+        version=2,
     ),
     Step(
         name="blank",
@@ -316,6 +318,7 @@ STEP_TABLE: tuple[Step, ...] = (
         reads=lambda s, b: (
             b.part.digest,
             s.recognition.frame if s.recognition else None,
+            usual_blank(s.recognition.family) if s.recognition else "",
             b.shop.digest,
             source_of(s),
         ),

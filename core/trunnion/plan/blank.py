@@ -1,16 +1,22 @@
-"""The blank: a box or a round bar around the part with an allowance on each side, or what a file holds."""
+"""The blank: a box, a round bar or a turned envelope around the part with an allowance on each side, or what a file holds."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.turned_outline import outer_meridian
 from trunnion.model.blank import AXES, Blank, Box, Faceted, Revolved
 from trunnion.model.material import Material
 from trunnion.settings import setting, settings
+from trunnion.tolerance import CHORD, COINCIDENT
 
-KINDS = ("box", "cylinder", "file")
+AUTOMATIC, BOX, CYLINDER, TURNED, FILE = "auto", "box", "cylinder", "turned", "file"
+KINDS = (AUTOMATIC, BOX, CYLINDER, TURNED, FILE)
+LEVELS = 64
+"""Bands along the axis that a turned envelope follows the part in: of 2 mm on a wheel of 120 mm."""
 DECIMALS = 7
 """Decimals of a radius in mm: ten times finer than two points are told apart."""
 
@@ -20,10 +26,11 @@ class BlankSettings:
     """What the blank is, how much larger than the part, and what it is made of."""
 
     kind: str = setting(
-        "box",
+        AUTOMATIC,
         choices=KINDS,
         label="Kind of blank",
-        help="A box or a round bar around the part, or the solid of a file.",
+        help="A box, a round bar or a turned envelope around the part, or the solid of a file; auto: what parts of the family are usually "
+        "cut from, a box for most.",
     )
     side: float = setting(
         5.0,
@@ -31,7 +38,7 @@ class BlankSettings:
         low=0.0,
         high=500.0,
         label="Side allowance",
-        help="Material on each of the four sides; on a round bar beyond the part, and at the ends of a lying one.",
+        help="Material on each of the four sides; on what is round beyond the part, and at the ends of a lying bar.",
     )
     top: float = setting(
         2.0,
@@ -39,7 +46,7 @@ class BlankSettings:
         low=0.0,
         high=500.0,
         label="Top allowance",
-        help="Material over the part's top.",
+        help="Material over the part's top, a wheel's front.",
     )
     bottom: float = setting(
         0.0,
@@ -47,7 +54,7 @@ class BlankSettings:
         low=0.0,
         high=500.0,
         label="Bottom allowance",
-        help="Material under the part's bottom.",
+        help="Material under the part's bottom, a wheel's back.",
     )
     axis: str = setting(
         "z",
@@ -62,6 +69,19 @@ class BlankSettings:
         high=10000.0,
         label="Diameter of the bar",
         help="Diameter of a round bar; 0: what the part needs and the side allowance.",
+    )
+    bored: bool = setting(
+        False,
+        label="Bored",
+        help="Whether a turned envelope has the part's through bore already, with the bore allowance.",
+    )
+    bore: float = setting(
+        2.0,
+        unit="mm",
+        low=0.0,
+        high=500.0,
+        label="Bore allowance",
+        help="Material inside the bore of a turned envelope that is bored.",
     )
     file: str = setting(
         "",
@@ -112,6 +132,41 @@ def make_bar(
         material.density,
         settings.axis,
     )
+
+
+def make_envelope(
+    frame: Frame, points: Floats, triangles: Ints, material: Material, settings: BlankSettings
+) -> Revolved:
+    """Return the turned envelope of a part whose triangles (t, 3) of points (v, 3) are given in `frame`: the outermost meridian of all its
+    faces about the frame's z, with the allowances beyond it.
+
+    Recesses of the ends are filled. Raises `BadInput` where the part is nowhere round the axis.
+    """
+    level, outer, inner = outer_meridian(points, triangles, LEVELS)
+    near = np.abs(level[:, None] - level) <= settings.side
+    radius = np.where(near, outer, 0.0).max(axis=1) + settings.side + CHORD
+    level = level.copy()
+    level[0] -= settings.bottom
+    level[-1] += settings.top
+    hollow = inner - settings.bore if settings.bored else 0.0
+    hollow = max(0.0, hollow - CHORD)
+    outline = np.vstack([[hollow, level[0]], np.column_stack([radius, level]), [hollow, level[-1]]])
+    if radius.min() <= hollow + COINCIDENT:
+        raise BadInput("the bore leaves nothing of the envelope: set blank.bored = no")
+    return Revolved(
+        frame=frame,
+        outline=np.round(_straightened(outline), DECIMALS),
+        material=material.name,
+        density=material.density,
+    )
+
+
+def _straightened(outline: Floats) -> Floats:
+    """Return an outline without the points that lie on the line between their neighbours."""
+    before, after = np.roll(outline, 1, axis=0), np.roll(outline, -1, axis=0)
+    along, step = after - before, outline - before
+    off = np.abs(along[:, 0] * step[:, 1] - along[:, 1] * step[:, 0])
+    return outline[off > COINCIDENT * np.maximum(np.linalg.norm(along, axis=1), COINCIDENT)]
 
 
 def make_faceted(

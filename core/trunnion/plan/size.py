@@ -6,15 +6,20 @@ Names are those of the features (`docs/words.md`); the part's own sizes have the
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.session import SizeEntry
-from trunnion.recognize.contract import smallest_sizes
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.recognize.contract import analysed_sizes, smallest_sizes
 from trunnion.recognize.extent import box
 from trunnion.recognize.grow import bend_radius
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
 
 PART = "part"
 ROLES = {
@@ -52,9 +57,19 @@ UNITS = (("lean", "degrees"), ("angle", "degrees"), ("area", "mm2"), ("ratio", "
 """Units of sizes whose names end so; all others are lengths."""
 
 
-def size_table(recognition: Recognition, graph: FaceGraph) -> tuple[SizeEntry, ...]:
-    """Return the sizes of the part, then those of its features in their order; `graph` is in the part's coordinates as read."""
+def size_table(
+    recognition: Recognition,
+    graph: FaceGraph,
+    part: Part | None = None,
+    progress: Progress = NO_PROGRESS,
+) -> tuple[SizeEntry, ...]:
+    """Return the sizes of the part, then those of its features in their order; `graph` is in the part's coordinates as read.
+
+    With the part itself, what its family measures on it stands among its sizes.
+    """
     entries = list(_part_sizes(recognition, graph))
+    if part is not None:
+        entries.extend(analysed_sizes(recognition, graph, part, progress))
     for feature in recognition.features:
         for name, value in feature.sizes.items():
             if isinstance(value, (bool, str)):

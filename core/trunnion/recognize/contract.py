@@ -15,6 +15,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.region import Region
 from trunnion.geometry.surface.curvature import FaceCurvature
 from trunnion.model.feature import Feature, GeneralizedPocket, Recognition
+from trunnion.model.session import SizeEntry
 from trunnion.progress import Progress
 from trunnion.registry import FAMILIES
 
@@ -147,6 +148,20 @@ class Measuring(Protocol):
         ...
 
 
+@runtime_checkable
+class SizeAnalysing(Protocol):
+    """A family that measures more of a part than its features' own sizes: what takes the part's exact surfaces, or two features."""
+
+    def analysed(
+        self, found: Recognition, graph: FaceGraph, part: Any, progress: Progress
+    ) -> tuple[SizeEntry, ...]:
+        """Return these sizes, ready for the size table.
+
+        Raises `Cancelled` when a person asked to stop.
+        """
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Smallest:
     """A size of the part that is the smallest of a size of its features: `name` in the size table, `size` of features of some `kinds`."""
@@ -168,6 +183,19 @@ class Bounding(Protocol):
     """A family whose smallest sizes bound what cutters a part can be machined with: they are sizes of the part."""
 
     smallest: tuple[Smallest, ...]
+
+
+@runtime_checkable
+class Blanked(Protocol):
+    """A family whose parts are usually cut from another blank than a box: its kind, in the words of `blank.kind`."""
+
+    blank: str
+
+
+def usual_blank(family: str) -> str:
+    """Return the kind of blank that parts of a family are usually cut from."""
+    found = _registered(family)
+    return found.blank if isinstance(found, Blanked) else "box"
 
 
 def feature_kinds() -> dict[str, FeatureKind]:
@@ -197,6 +225,16 @@ def smallest_sizes(family: str) -> tuple[Smallest, ...]:
     """Return the sizes of the part that are the smallest of its features' by a family; none where it has none or is not registered."""
     found = _registered(family)
     return found.smallest if isinstance(found, Bounding) else ()
+
+
+def analysed_sizes(
+    found: Recognition, graph: FaceGraph, part: Any, progress: Progress
+) -> tuple[SizeEntry, ...]:
+    """Return the sizes that a part's family measures besides those of its features; none where it has none or is not registered."""
+    family = _registered(found.family)
+    return (
+        family.analysed(found, graph, part, progress) if isinstance(family, SizeAnalysing) else ()
+    )
 
 
 def _registered(family: str) -> Any:

@@ -16,10 +16,12 @@ def add(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the blank's size, volume and mass."""
+    """Print the blank's size, volume and mass, and its volume over the part's (buy-to-fly)."""
     _, session = open_session(options, "blank")
     blank = session.blank
     assert blank is not None
+    part = session.part
+    ratio = blank.volume / part.volume if part is not None and part.volume > 0.0 else None
     if options.step:
         from trunnion.part.build import ShapeBuilder
         from trunnion.part.write import write_step
@@ -35,6 +37,7 @@ def run(options: argparse.Namespace) -> int:
                 "max": list(map(float, blank.high)),
                 "volume": blank.volume,
                 "mass_kg": blank.mass,
+                "buy_to_fly": ratio,
                 "findings": [f.as_dict() for f in session.findings()],
             }
         )
@@ -42,6 +45,7 @@ def run(options: argparse.Namespace) -> int:
         sizes = " x ".join(f"{sign}{v:.3f}" for sign, v in blank.measures())
         print(
             f"{blank.kind} {sizes} mm of {blank.material}, {blank.volume / 1e3:.1f} cm3, {blank.mass:.2f} kg"
+            + (f", {ratio:.2f} times the part" if ratio else "")
         )
     show_findings(options, session.findings())
     return exit_code(session.findings())

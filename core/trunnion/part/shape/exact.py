@@ -68,6 +68,19 @@ class ExactFace:
         """Return which uv (k, 2) lie inside the trim."""
         return self._trim.holds(np.asarray(uv, dtype=np.float64))
 
+    def rim(self, count: int) -> Floats:
+        """Return points (k, 3) along the face's edges, `count` on each, both ends among them."""
+        from OCP.BRepAdaptor import BRepAdaptor_Curve
+
+        from trunnion.part.topology.identity import edges_of
+
+        found = []
+        for edge in edges_of(self._view.face):
+            curve = BRepAdaptor_Curve(edge)
+            along = np.linspace(curve.FirstParameter(), curve.LastParameter(), count)
+            found.append([curve.Value(t).Coord() for t in along.tolist()])
+        return self._frame.to_local(np.array(found, dtype=np.float64).reshape(-1, 3))
+
     def at(self, uv: Floats) -> ExactPoints:
         """Return the surface at uv (k, 2)."""
         rows = self._evaluate(np.asarray(uv, dtype=np.float64)).reshape(-1, 18)

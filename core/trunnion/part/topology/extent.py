@@ -102,7 +102,7 @@ def _searched(view: TrimmedFace, boundary: Floats, progress: Progress) -> Box:
     trim, evaluate = Trim(view, progress), evaluator_of(view.adaptor)
 
     def inside(uv: Floats) -> tuple[Floats, Floats]:
-        kept = uv[trim.holds(uv)]
+        kept = uv[trim.holds(uv, with_rim=True)]
         return kept, evaluate(kept)[:, 0]
 
     projection, points = inside(np.array(view.grid(_GRID)))

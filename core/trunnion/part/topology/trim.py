@@ -24,8 +24,15 @@ SAG = 1e-4
 FEW = 40
 """Fewer positions are classified by the kernel alone: that is as quick as opening the outline."""
 HALVINGS = 8
+ON = 1e-6
+"""Of the face's size in its parameters: a position this near to the outline where that runs along the bounds lies on it; the kernel's
+bounds are wider by a tenth of this."""
 TRIED = 8
 """Positions along both sides of a grid at which the outline must say the same as the kernel."""
+
+
+_NOWHERE = Outlines.of(np.full((1, 4), 9.0), ON)
+"""An outline beside all faces."""
 
 
 class Trim:
@@ -37,10 +44,11 @@ class Trim:
         self._turns = np.array([view.adaptor.IsUPeriodic(), view.adaptor.IsVPeriodic()])
         self._low, self._size = np.array([u0, v0]), np.array([u1 - u0, v1 - v0])
         self._outlines: Outlines | None = None
+        self._along_bounds: Outlines | None = None
         self._tried = False
 
-    def holds(self, uv: Floats) -> Bools:
-        """Return which uv (k, 2) lie inside."""
+    def holds(self, uv: Floats, with_rim: bool = False) -> Bools:
+        """Return which uv (k, 2) lie inside; with its rim, positions on the outline do too (else the kernel may say either)."""
         if not self._tried and len(uv) > FEW:
             self._tried = True
             self._outlines = self._opened()
@@ -53,8 +61,25 @@ class Trim:
             axis=1
         )
         inside = position_class == IN
+        if with_rim and unsure.any():
+            # Where bounds are clipped to, most positions lie on the outline: the kernel takes 0.3 ms for each of these (measured).
+            on_rim = np.zeros(len(uv), dtype=bool)
+            on_rim[unsure] = self._on_rim(share[unsure])
+            inside |= on_rim
+            unsure &= ~on_rim
         inside[unsure] = self._by_kernel(uv[unsure])
         return inside
+
+    def _on_rim(self, share: Floats) -> Bools:
+        if self._along_bounds is None and self._outlines is not None:
+            pieces = self._outlines.pieces
+            ends = pieces.reshape(-1, 2, 2)
+            along = ((np.abs(ends) < ON).all(axis=1) | (np.abs(ends - 1.0) < ON).all(axis=1)).any(
+                axis=1
+            )
+            self._along_bounds = Outlines.of(pieces[along], ON) if along.any() else _NOWHERE
+        assert self._along_bounds is not None
+        return np.asarray(self._along_bounds.within(share) == NEAR)
 
     def _by_kernel(self, uv: Floats) -> Bools:
         return np.array([self._holds(u, v) for u, v in uv.tolist()], dtype=bool)

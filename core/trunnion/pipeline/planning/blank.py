@@ -16,11 +16,20 @@ from trunnion.model.blank import Blank
 from trunnion.model.material import Material
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
-from trunnion.plan.blank import BlankSettings, make_bar, make_blank, make_faceted
+from trunnion.plan.blank import (
+    AUTOMATIC,
+    CYLINDER,
+    FILE,
+    TURNED,
+    BlankSettings,
+    make_bar,
+    make_blank,
+    make_envelope,
+    make_faceted,
+)
 from trunnion.progress import Progress
+from trunnion.recognize.contract import usual_blank
 from trunnion.settings import checked, choose
-
-FILE, CYLINDER = "file", "cylinder"
 
 
 def blank_of(session: Session, context: Context, frame: Frame, progress: Progress) -> Blank:
@@ -33,8 +42,14 @@ def blank_of(session: Session, context: Context, frame: Frame, progress: Progres
     material = context.shop.materials[settings.material]
     if settings.kind == FILE:
         return _read(session, frame, material, settings.file, progress)
+    kind = settings.kind
+    if kind == AUTOMATIC and session.recognition is not None:
+        kind = usual_blank(session.recognition.family)
     low, high = context.box(frame)
-    if settings.kind == CYLINDER:
+    if kind == TURNED:
+        mesh = context.part.mesh()
+        return make_envelope(frame, frame.to_local(mesh.points), mesh.triangles, material, settings)
+    if kind == CYLINDER:
         points = frame.to_local(context.part.mesh().points)
         return make_bar(frame, low, high, points, material, settings)
     return make_blank(frame, low, high, material, settings)

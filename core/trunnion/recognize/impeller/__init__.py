@@ -4,12 +4,14 @@ programming of aero-engine centrifugal impellers), made to hold on files with sp
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trunnion.findings import Finding
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Feature, Recognition
+from trunnion.model.session import SizeEntry
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Suitability
 from trunnion.recognize.holes.features import hole_feature, pattern_attributes
@@ -26,9 +28,13 @@ from trunnion.recognize.impeller.kinds import HOLE, KINDS
 from trunnion.recognize.impeller.meridian import HubMeridian
 from trunnion.recognize.impeller.rows import BladeRows, rows_of
 from trunnion.recognize.impeller.settings import ImpellerSettings
+from trunnion.recognize.impeller.sizes import ImpellerSizes
 from trunnion.recognize.impeller.suitability import suitability
 from trunnion.recognize.impeller.turned import bore_among, turned_faces
 from trunnion.recognize.revolution import RevolutionAxis, main_axis, of_revolution
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
 
 
 class ImpellerFamily:
@@ -38,6 +44,7 @@ class ImpellerFamily:
     noun = "an impeller"
     kinds = KINDS
     settings = ImpellerSettings
+    blank = "turned"
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return the share of the part's area in its blades, the faces of revolution and all that is repeated about the axis."""
@@ -69,6 +76,14 @@ class ImpellerFamily:
         return _found(
             self.name, graph, made[0], Recognition(family=self.name, frame=frame), made[1]
         )
+
+    def analysed(
+        self, found: Recognition, graph: FaceGraph, part: Part, progress: Progress
+    ) -> tuple[SizeEntry, ...]:
+        """Return the sizes of the wheel and of one blade of each row (`sizes`)."""
+        progress.doing("measuring channels and blades")
+        sizes = ImpellerSizes(found=found, graph=graph, part=part, progress=progress)
+        return tuple(sizes.entries())
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
