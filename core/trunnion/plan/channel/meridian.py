@@ -17,6 +17,8 @@ from trunnion.geometry.arrays import Floats, floats
 
 KNOT = 0.3
 """mm between the points that a curve is carried through: at a bend of 5 mm radius the cubic is within 0.1 um."""
+NEAR = 0.004
+"""mm between the places of a curve that the nearest one is looked for among."""
 STEPS_U, STEPS_W = 240, 60
 """Places of the net from which the nearest one is the first guess at what coordinates a point has."""
 NEWTON = 4
@@ -65,7 +67,7 @@ class MeridianCurve:
 
     def nearest(self, point: Floats) -> Floats:
         """Return the lengths mm (k,) along it of the places nearest to points (k, 2)."""
-        length = np.linspace(0.0, self.length, max(2, int(self.length / (0.1 * KNOT))))
+        length = np.linspace(0.0, self.length, max(2, int(self.length / NEAR)))
         return np.asarray(length[cKDTree(self._spline(length)).query(point)[1]])
 
     def places(self, along: Floats) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -47,10 +48,11 @@ class Wheel:
         """Return the gaps of the first period, from a skin in the rotor's frame."""
         cambers: list[Camber] = []
         for f in self.blades[: self.period]:
-            cambers.append(camber_of(skin, f.with_role(*WALLS), self.meridian))
+            feet = f.with_role(*ROOT) or f.tags
+            cambers.append(camber_of(skin, f.with_role(*WALLS), feet, self.meridian))
         step = 2.0 * math.pi / len(self.copies)
         closing = [*cambers, cambers[0].turned(step)]
-        pairs = zip(closing[:-1], closing[1:], strict=True)
+        pairs = pairwise(closing)
         return tuple(g for pair in pairs for g in gaps_of(pair, self.meridian)[:1])
 
 

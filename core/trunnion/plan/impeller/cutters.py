@@ -11,14 +11,16 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
-from trunnion.plan.channel.wheel import WALLS, Wheel
+from trunnion.plan.channel.wheel import ROOT, WALLS, Wheel
 
 FACING = -0.5
 """Largest cosine of the angle between the normals of two places that face each other over a channel."""
 OVER = 1.0
 """mm that flutes are longer than blades are high: what is above them is thicker."""
-ROUND = 1e-3
+ROUND = 0.01
 """mm by which a cutter may be rounder than a fillet: what fillets are modelled to."""
+SHORT, SHARPEST = 0.05, 0.98
+"""mm: shorter sides of triangles say nothing of a bend; and the share of bends that are no sharper than the fillet's."""
 NEAREST = 12
 """Places on the other wall that are looked at for one that faces."""
 
@@ -34,11 +36,6 @@ class WheelSizes:
 
 def sizes_of(wheel: Wheel, skin: Skin) -> WheelSizes:
     """Return the sizes of a wheel, from a skin in the rotor's frame."""
-    fillets = [
-        float(value)
-        for f in wheel.blades
-        if isinstance(value := f.sizes.get("root_fillet", 0.0), (int, float)) and value > 0.0
-    ]
     return WheelSizes(
         channel=min(
             _between(skin, a, b)
@@ -48,9 +45,30 @@ def sizes_of(wheel: Wheel, skin: Skin) -> WheelSizes:
                 strict=True,
             )
         ),
-        fillet=min(fillets, default=0.0),
+        fillet=min(
+            (_roundness(skin, f.with_role(*ROOT)) for f in wheel.blades[: wheel.period]),
+            default=0.0,
+        ),
         height=float(wheel.meridian.height(np.linspace(0.0, 1.0, 33)).max()),
     )
+
+
+def _roundness(skin: Skin, tags: tuple[int, ...]) -> float:
+    """Return the radius in mm of the hollow that root fillets make, by the turn of normals along the sides of their triangles; 0 without
+    fillets. A few sides may be sharper: the kernel's corner values."""
+    triangles = skin.triangles[skin.of(tags)]
+    if not len(triangles):
+        return 0.0
+    sides = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    step = skin.points[sides[:, 1]] - skin.points[sides[:, 0]]
+    turn = skin.normals[sides[:, 1]] - skin.normals[sides[:, 0]]
+    square = (step * step).sum(axis=1)
+    rows = square > SHORT**2
+    if not rows.any():
+        return 0.0
+    bend = -(turn * step).sum(axis=1)[rows] / square[rows]
+    sharpest = float(np.quantile(bend, SHARPEST))
+    return 1.0 / sharpest if sharpest > 0.0 else 0.0
 
 
 def _between(skin: Skin, first: Feature, second: Feature) -> float:

@@ -19,7 +19,6 @@ from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
     roughing_depth,
-    roughing_width,
 )
 from trunnion.plan.freeform.cutters.choice import named
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
@@ -38,6 +37,8 @@ CUTTER_RULES = (CHANNEL, WALL, HUB_CUTTER, FILLET)
 """Words that a typical plan may give for a stage's cutter."""
 ROLES = {WALL: (*WALLS, *EDGES), FILLET: ROOT}
 """Roles of the faces that a stage finishes, by its rule for the cutter."""
+WIDTH = 0.5
+"""Of the cutter's diameter: how far apart the passes of a layer lie. The first of them is a full slot anyhow."""
 LEFT = 2.0
 """Times the roughing allowance: how deep finishing cuts at most, where walls twist away from the tool that roughed along them."""
 
@@ -141,7 +142,7 @@ def _add(
     else:
         bears = roughing_depth(tool, state.material, cutting)
         depth = min(bears, s.layer) if s.layer > 0.0 else bears
-        width = roughing_width(tool, state.material, cutting)
+        width = WIDTH * tool.diameter
         choices = {ALLOWANCE: s.rough_allowance}
         why = (
             f"{tool.name}: the narrowest channel is {trimmed(state.sizes.channel, 2)} mm wide, blades are {trimmed(state.sizes.height, 1)} mm "

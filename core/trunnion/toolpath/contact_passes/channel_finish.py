@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.findings import Finding, warning
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.operation import CuttingData
@@ -20,11 +21,13 @@ from trunnion.toolpath.contact_passes.blank_clearance import body_outside
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.leaning_passes import PointMilledPasses, milled
 from trunnion.toolpath.contact_passes.open_axes import open_axes
-from trunnion.toolpath.contact_passes.orbit import OrbitParameters, copied, orbited
+from trunnion.toolpath.contact_passes.orbit import OrbitParameters, Retreat, copied, orbited
 from trunnion.toolpath.contact_passes.stock_clearance import LEAST_STOCK
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.motion.reorient import clearance_sphere
 
+OFF = 0.8 * tolerance.CHORD
+"""mm that cutters stay off what they finish: the triangles that they are held against stand out of hollow faces by as much."""
 SAMPLES = 260
 """Contacts at which axes are looked for; between them they are even."""
 BESIDE = math.radians(0.5)
@@ -75,7 +78,7 @@ def finished(
 ) -> Planned:
     """Return the path along lines of contacts, which are cut in their order and direction, and its copies around the wheel.
 
-    `wanted` says which axes are wanted at points with normals. Neck, shank and holder stay out of the blank and, by a millimetre, off the
+    `wanted` says which axes are wanted at points with normals, near which space is looked for. Neck, shank and holder stay out of the blank and, by a millimetre, off the
     part; where no axis does so they stay off the part alone.
     """
     surface = drive.surface
@@ -83,66 +86,97 @@ def finished(
     lines = [line for line in lines if len(line) > 1]
     if not lines:
         return Planned(findings=findings)
-    plain = surface.query_for(tool)
-    wary = _outside(
-        surface.query_for(thickened(tool, LEAST_STOCK)), body_outside(tool, drive.inward)
+    queries = (
+        outside_query(
+            surface.query_for(thickened(tool, LEAST_STOCK)), body_outside(tool, drive.inward)
+        ),
+        surface.query_for(tool),
     )
-    limits = LeanLimits(turn=turn, steepest=steepest_of(tool))
-    point, normal = (
-        np.vstack([getattr(line, name) for line in lines]) for name in ("point", "normal")
+    done = passes_along(
+        lines,
+        tool,
+        wanted,
+        queries,
+        LeanLimits(turn=turn, steepest=steepest_of(tool)),
+        chord,
+        surface.allowance + OFF,
+        progress,
     )
-    rows = np.unique(np.linspace(0, len(point) - 1, SAMPLES).astype(np.int64))
-    done = PointMilledPasses(passes=(), rest=tuple(lines), remaining=1.0)
-    for n, query in enumerate((wary, plain)):
-        share = progress.part(0.45 * n, 0.45 * (n + 1))
-        if not done.rest:
-            break
-        open_ = open_axes(
-            point[rows],
-            normal[rows],
-            wanted(point[rows], normal[rows]),
-            tool,
-            query,
-            limits.steepest,
-            allowance=surface.allowance,
-            progress=share.part(0.0, 0.4),
-        )
-        if not open_.free.any():
-            continue
-        more = milled(
-            done.rest,
-            tool,
-            open_.field(),
-            query,
-            limits,
-            chord,
-            surface.allowance,
-            share.part(0.4, 1.0),
-        )
-        done = PointMilledPasses(
-            passes=(*done.passes, *more.passes),
-            rest=more.rest,
-            remaining=done.remaining * more.remaining,
-        )
-    left = _left(done, surface.feature, tool)
+    left = left_findings(done, surface.feature, tool)
     if not done.passes:
         return Planned(findings=(*findings, *left))
     sphere = clearance_sphere(drive.blank, setup)
-    deep = float(drive.gaps[0].meridian.height(np.linspace(0.0, 1.0, 9)).max())
     parameters = OrbitParameters(
         near=NEAR * stepover,
         turn=LINK_TURN,
         feed=data.feed,
         link_feed=data.feed,
         sphere=sphere,
-        retreat=lambda tip, axis: deep + safety,
-        query=plain,
+        retreat=out_of_channel(drive, safety),
+        query=queries[-1],
     )
     path = orbited(done.passes, parameters)
     return Planned(path=copied(path, drive.copies, sphere), findings=(*findings, *left))
 
 
-def _outside(query: ClearanceQuery, outside: Callable[[Floats, Floats], Bools]) -> ClearanceQuery:
+def passes_along(
+    lines: Sequence[Contacts],
+    tool: Tool,
+    wanted: Callable[[Floats, Floats], Floats],
+    queries: Sequence[ClearanceQuery],
+    limits: LeanLimits,
+    chord: float,
+    allowance: float,
+    progress: Progress = NO_PROGRESS,
+) -> PointMilledPasses:
+    """Return the passes along lines, in the order of these, with axes of much space: what the first query lets not be the next one may."""
+    done = PointMilledPasses(passes=(), rest=tuple(lines), remaining=1.0)
+    for n, query in enumerate(queries):
+        share = progress.part(0.9 * n / len(queries), 0.9 * (n + 1) / len(queries))
+        if not done.rest:
+            break
+        point, normal = _some(done.rest)
+        found = open_axes(
+            point,
+            normal,
+            wanted(point, normal),
+            tool,
+            query,
+            limits.steepest,
+            allowance=allowance,
+            progress=share.part(0.0, 0.4),
+        )
+        if not found.free.any():
+            continue
+        more = milled(
+            done.rest, tool, found.field(), query, limits, chord, allowance, share.part(0.4, 1.0)
+        )
+        done = PointMilledPasses(
+            passes=(*done.passes, *more.passes),
+            rest=more.rest,
+            remaining=done.remaining * more.remaining,
+        )
+    return done
+
+
+def out_of_channel(drive: ChannelDrive, safety: float) -> Retreat:
+    """Return how far a tool is fed out along its axis: as far as blades are high, and a safety distance."""
+    deep = float(drive.gaps[0].meridian.height(np.linspace(0.0, 1.0, 9)).max())
+    return lambda tip, axis: deep + safety
+
+
+def _some(lines: Sequence[Contacts]) -> tuple[Floats, Floats]:
+    """Return some points and normals (k, 3) of lines, evenly many of each."""
+    point, normal = (
+        np.vstack([getattr(line, name) for line in lines]) for name in ("point", "normal")
+    )
+    rows = np.unique(np.linspace(0, len(point) - 1, SAMPLES).astype(np.int64))
+    return point[rows], normal[rows]
+
+
+def outside_query(
+    query: ClearanceQuery, outside: Callable[[Floats, Floats], Bools]
+) -> ClearanceQuery:
     """Return a query that demands what another one does, and that what is above the flutes is outside of the blank."""
 
     def both(
@@ -161,7 +195,7 @@ def _outside(query: ClearanceQuery, outside: Callable[[Floats, Floats], Bools]) 
     return both
 
 
-def _left(done: PointMilledPasses, feature: str, tool: Tool) -> tuple[Finding, ...]:
+def left_findings(done: PointMilledPasses, feature: str, tool: Tool) -> tuple[Finding, ...]:
     if done.remaining < SMALLEST_LEFTOVER:
         return ()
     return (
