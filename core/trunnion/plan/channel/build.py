@@ -7,7 +7,6 @@ from dataclasses import replace
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
@@ -15,7 +14,6 @@ from trunnion.model.setup import Setup
 from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.channel.blank_depth import BlankDepth
 from trunnion.plan.channel.drive import ChannelDrive
-from trunnion.plan.channel.gap import Gap
 from trunnion.plan.channel.wheel import (
     BLADE,
     EDGES,
@@ -126,11 +124,3 @@ def _first_faces(
     raise Refused(
         f"{operation.id}: its faces are no walls, root fillets or hub of the wheel; choose a strategy of the surface family"
     )
-
-
-def in_rotor(skin: Skin, recognition: Recognition) -> Skin:
-    """Return a part's skin in the rotor's frame."""
-    return skin.moved(WORLD, recognition.frame)
-
-
-__all__ = ["Gap", "channel_driven", "in_rotor", "rotor_setup"]

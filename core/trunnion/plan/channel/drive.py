@@ -13,6 +13,7 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 from trunnion.model.blank import Blank
 from trunnion.plan.channel.gap import Gap
+from trunnion.plan.channel.meridian import cylindrical
 from trunnion.plan.freeform.drive import SurfaceDrive
 
 
@@ -21,9 +22,10 @@ class ChannelDrive:
     """Gaps between the blades of one period, and the surfaces of it.
 
     `surface` has what any surface strategy needs; its `faces` are those of the period that the operation finishes (none where it roughs).
-    `gaps`: one for each gap of the period; `in_gaps` whether the operation goes through them. `copies` (rad): the turns about the axis that bring the period to all of its places, the first
-    one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the shroud and towards the hub, where passes begin and
-    end. `inward` says how deep below the blank's surface points (k, 3) lie, negative outside. `blank` is the blank itself.
+    `gaps`: one for each gap of the period; `in_gaps` whether the operation goes through them. `copies` (rad): the turns about the axis that
+    bring the period to all of its places, the first one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the
+    shroud and towards the hub, where passes begin and end. `inward` says how deep below the blank's surface points (k, 3) lie, negative
+    outside. `blank` is the blank itself.
     """
 
     surface: SurfaceDrive
@@ -42,8 +44,6 @@ class ChannelDrive:
 
     def rulings(self, points: Floats) -> Floats:
         """Return unit directions (k, 3) from hub to shroud at points (k, 3), along the rulings of the walls beside them."""
-        from trunnion.plan.channel.meridian import cylindrical
-
         rz, angle = cylindrical(points)
         uw = self.gaps[0].meridian.coordinates(rz)
         u, w = uw[:, 0], np.clip(uw[:, 1], 0.0, 1.0)
@@ -56,6 +56,15 @@ class ChannelDrive:
             off = np.maximum(np.maximum(-v, v - 1.0), 0.0)
             rows = np.flatnonzero(off < best)
             best[rows] = off[rows]
-            # What lies in another period is turned there and back: the angle between is all that counts.
-            found[rows] = gap.rulings(u[rows], np.clip(v[rows], 0.0, 1.0))
+            inside = np.clip(v[rows], 0.0, 1.0)
+            # What lies beyond a camber has the ruling that is there, turned to its own place.
+            turn = near[rows] - gap.angle(u[rows], inside, w[rows])
+            found[rows] = _turned(gap.rulings(u[rows], inside), turn)
         return found
+
+
+def _turned(direction: Floats, angle: Floats) -> Floats:
+    """Return directions (k, 3) turned about z by angles (k,) rad."""
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = direction[:, 0], direction[:, 1]
+    return np.column_stack([c * x - s * y, s * x + c * y, direction[:, 2]])

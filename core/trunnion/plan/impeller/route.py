@@ -145,8 +145,9 @@ def _add(
         width = WIDTH * tool.diameter
         choices = {ALLOWANCE: s.rough_allowance}
         why = (
-            f"{tool.name}: the narrowest channel is {trimmed(state.sizes.channel, 2)} mm wide, blades are {trimmed(state.sizes.height, 1)} mm "
-            f"high; layers of {trimmed(depth, 2)} mm, {trimmed(s.rough_allowance, 2)} mm are left."
+            f"{tool.name}: the narrowest channel is {trimmed(state.sizes.channel, 2)} mm wide, "
+            f"blades are {trimmed(state.sizes.height, 1)} mm high; "
+            f"layers of {trimmed(depth, 2)} mm, {trimmed(s.rough_allowance, 2)} mm are left."
         )
     copies = len(state.wheel.copies)
     rules = (

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -196,10 +197,15 @@ def layers(
         w = height / tall
         # As far off the walls as the ball is wide at a level: on the lowest ones it lies in the root fillets.
         low, high = between_walls(gap, u, w, tool.radius + allowance)
-        surface = level_of(gap, lambda x, h=height: np.interp(x, u, h))
+        surface = level_of(gap, partial(_between, u, height))
         sets = lines_between(surface, u, low, high, data.width)
         found.append([line for some in sets for line in some])
     return [[line.reversed() if n % 2 else line for n, line in enumerate(lines)] for lines in found]
+
+
+def _between(u: Floats, height: Floats, at: Floats) -> Floats:
+    """Return the height (k,) of a level at coordinates (k,), from those at u (nu,)."""
+    return np.asarray(np.interp(at, u, height))
 
 
 def in_turn(passes: Sequence[Pass]) -> list[Pass]:

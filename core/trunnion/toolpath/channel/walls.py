@@ -8,11 +8,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from trunnion.findings import Finding, Refused, info, warning
-from trunnion.geometry.arrays import Floats
-from trunnion.model.motion.toolpath import Toolpath
+from trunnion.findings import Finding, Refused, info
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -135,6 +131,3 @@ def _lines(
 
 def _named(tags: tuple[int, ...]) -> str:
     return ", ".join(f"face {t}" for t in tags)
-
-
-_ = (Floats, Toolpath, np, warning)

@@ -78,8 +78,8 @@ def finished(
 ) -> Planned:
     """Return the path along lines of contacts, which are cut in their order and direction, and its copies around the wheel.
 
-    `wanted` says which axes are wanted at points with normals, near which space is looked for. Neck, shank and holder stay out of the blank and, by a millimetre, off the
-    part; where no axis does so they stay off the part alone.
+    `wanted` says which axes are wanted at points with normals, near which space is looked for. Neck, shank and holder stay out of the blank
+    and, by a millimetre, off the part; where no axis does so they stay off the part alone.
     """
     surface = drive.surface
     assert surface.query_for is not None

@@ -1,7 +1,7 @@
 """Lines along the stream in a gap between two blades: on the hub, or on levels between hub and shroud.
 
-Lines of equal share of the way from blade to blade run with the stream. A gap widens: where they would lie too far apart, more of them begin
-between the others. Each is there only between the two walls, or the toes of their fillets.
+Lines of equal share of the way from blade to blade run with the stream. A gap widens: where they would lie too far apart, more of them
+begin between the others. Each is there only between the two walls, or the toes of their fillets.
 """
 
 from __future__ import annotations

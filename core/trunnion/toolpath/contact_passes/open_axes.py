@@ -103,7 +103,7 @@ def open_axes(
     score = np.where(free, score, -np.inf)
     best = np.argmax(score, axis=1)
     rows = np.arange(k)
-    axis, any_free = axes[rows, best], free.any(axis=1)
+    axis, any_free = axes[rows, best], np.asarray(free.any(axis=1))
     return OpenAxes(
         point=point,
         normal=normal,
