@@ -31,15 +31,17 @@ def _scorer() -> Any:
     return module
 
 
-def truth_of(name: str) -> dict[str, Any]:
-    """Return the truth of a panel part."""
+def truth_of(name: str, family: str = "panel") -> dict[str, Any]:
+    """Return the truth of a part."""
     assert PARTS is not None
-    return json.loads((PARTS / "panel" / f"{name}.truth.json").read_text())
+    return json.loads((PARTS / family / f"{name}.truth.json").read_text())
 
 
-def scored(name: str, file: Path, found: Recognition, move: Move = list) -> dict[str, Any]:
+def scored(
+    name: str, file: Path, found: Recognition, move: Move = list, family: str = "panel"
+) -> dict[str, Any]:
     """Return recall, precision, faces and roles, and per kind (in the truth, found, matched); `move` says where the truth's points are."""
-    scorer, truth = _scorer(), truth_of(name)
+    scorer, truth = _scorer(), truth_of(name, family)
     for feature in truth["features"]:
         for face in feature["faces"]:
             face["at"] = move(face["at"])

@@ -16,6 +16,7 @@ import pytest
 
 import samples
 from own_packages import names, with_own_packages
+from round_parts import wheel
 from shaped_parts import bowl
 from trunnion import registry
 from trunnion.findings import BadInput, Cancelled
@@ -38,6 +39,7 @@ def engines() -> dict[str, tuple[Engine, Session]]:
     for name, file in (
         ("pockets", samples.written(samples.two_pockets_and_a_rib_shape())),
         ("bowl", samples.written(bowl(20.0, 16.0, 8.0, 6.0).shape, name="bowl")),
+        ("wheel", samples.written(wheel(1).shape, name="wheel")),
     ):
         found[name] = _recognized(file)
     for folder in registry.resource_folders("samples")[1:]:

@@ -168,7 +168,7 @@ class ViewportPane(QWidget):
             Selection("faces", f"{kind_words(entry.name)} {entry.feature}", entry.faces)
         )
         self.scene.show_label(
-            f"{kind_words(entry.name)} {amount(entry.value)} {entry.unit}", entry.at
+            f"{kind_words(entry.name)} {amount(entry.value)} {entry.unit}", entry.at, entry.to
         )
 
     def refresh(self) -> None:

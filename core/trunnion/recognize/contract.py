@@ -149,7 +149,7 @@ class Measuring(Protocol):
 
 
 @runtime_checkable
-class SizeAnalysing(Protocol):
+class SizeMeasuring(Protocol):
     """A family that measures more of a part than its features' own sizes: what takes the part's exact surfaces, or two features."""
 
     def analysed(
@@ -186,7 +186,7 @@ class Bounding(Protocol):
 
 
 @runtime_checkable
-class Blanked(Protocol):
+class FamilyBlank(Protocol):
     """A family whose parts are usually cut from another blank than a box: its kind, in the words of `blank.kind`."""
 
     blank: str
@@ -195,7 +195,7 @@ class Blanked(Protocol):
 def usual_blank(family: str) -> str:
     """Return the kind of blank that parts of a family are usually cut from."""
     found = _registered(family)
-    return found.blank if isinstance(found, Blanked) else "box"
+    return found.blank if isinstance(found, FamilyBlank) else "box"
 
 
 def feature_kinds() -> dict[str, FeatureKind]:
@@ -233,7 +233,7 @@ def analysed_sizes(
     """Return the sizes that a part's family measures besides those of its features; none where it has none or is not registered."""
     family = _registered(found.family)
     return (
-        family.analysed(found, graph, part, progress) if isinstance(family, SizeAnalysing) else ()
+        family.analysed(found, graph, part, progress) if isinstance(family, SizeMeasuring) else ()
     )
 
 

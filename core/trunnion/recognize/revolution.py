@@ -50,7 +50,7 @@ def reach(graph: FaceGraph) -> float:
 
 def main_axis(graph: FaceGraph) -> RevolutionAxis | None:
     """Return the axis that the most area is of revolution about, None for a part without round faces and round edges."""
-    found = _lines(graph)
+    found = _lines(graph) if (graph.area > 0.0).any() else []
     return max(
         found, key=lambda axis: float(graph.area[of_revolution(graph, axis)].sum()), default=None
     )

@@ -298,9 +298,9 @@ class ViewportScene(QWidget):
         draw_cut(self.view, positions, line, self._theme)
         self.view.render()
 
-    def show_label(self, text: str, at: tuple[float, ...] = ()) -> None:
-        """Write a size at a point of the part."""
-        draw_label(self.view, text if len(at) == 3 else "", at, self._theme)
+    def show_label(self, text: str, at: tuple[float, ...] = (), to: tuple[float, ...] = ()) -> None:
+        """Write a size at a point of the part; a distance is drawn from there to the point `to`."""
+        draw_label(self.view, text if len(at) == 3 else "", at, self._theme, to)
         self.view.render()
 
     def use_frame(self, frame: Frame) -> None:

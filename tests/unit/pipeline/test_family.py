@@ -166,7 +166,7 @@ def test_program_refuses_a_casing_in_one_line_before_anything_is_planned(
         and len(said.splitlines()) == 1
     )
     assert said.endswith(
-        "choose recognize.family = panel or surface to go on with one of the families there are\n"
+        "choose recognize.family = impeller or panel or surface to go on with one of the families there are\n"
     )
     assert not (tmp_path / "out").exists()
 
@@ -174,7 +174,7 @@ def test_program_refuses_a_casing_in_one_line_before_anything_is_planned(
 @pytest.mark.parametrize("step", ["size", "blank", "route"])
 def test_every_step_after_recognition_refuses_while_the_kind_is_in_doubt(shell, step: str) -> None:
     engine = Engine()
-    with pytest.raises(BadInput, match="choose recognize.family = panel or surface"):
+    with pytest.raises(BadInput, match="choose recognize.family = impeller or panel or surface"):
         engine.run(engine.open(shell), step)
 
 

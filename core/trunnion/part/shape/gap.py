@@ -27,7 +27,7 @@ from trunnion.progress import NO_PROGRESS, Progress
 
 SPREAD = 41
 """Positions along either parameter of a face, and along each of its edges."""
-PLACES = 6
+STARTS = 6
 """Places that are followed: the nearest ones that lie a spacing of the spread apart."""
 TO_AND_FRO = 60
 """Projections from each place at most; most end after ten."""
@@ -49,9 +49,10 @@ def least_gap(
     """Return the least distance of two sets of faces (tags); raise `BadInput` where one is empty or not of the chosen solid."""
     clouds = [_cloud(part, tuple(tags), progress) for tags in (first, second)]
     (a, tags_a), (b, tags_b) = clouds
-    away, nearest = cKDTree(b).query(a)
+    neighbours = cKDTree(b).query(a)
+    away, nearest = (np.asarray(values) for values in neighbours)
     found: FaceGap | None = None
-    for row in _places(a, away):
+    for row in _starts(a, away):
         pair = _followed(
             part, a[row], b[nearest[row]], int(tags_a[row]), int(tags_b[nearest[row]]), progress
         )
@@ -61,12 +62,12 @@ def least_gap(
     return found
 
 
-def _places(points: Floats, away: Floats) -> list[int]:
+def _starts(points: Floats, away: Floats) -> list[int]:
     """Return the rows of points with the least distances, each the nearest in its surroundings."""
     reach = 2.0 * float(np.linalg.norm(np.ptp(points, axis=0))) / SPREAD
     kept: list[int] = []
     for row in np.argsort(away, kind="stable").tolist():
-        if len(kept) == PLACES:
+        if len(kept) == STARTS:
             break
         if all(np.linalg.norm(points[row] - points[k]) > reach for k in kept):
             kept.append(row)

@@ -74,9 +74,8 @@ class Trim:
         if self._along_bounds is None and self._outlines is not None:
             pieces = self._outlines.pieces
             ends = pieces.reshape(-1, 2, 2)
-            along = ((np.abs(ends) < ON).all(axis=1) | (np.abs(ends - 1.0) < ON).all(axis=1)).any(
-                axis=1
-            )
+            at_bound = np.stack([np.abs(ends) < ON, np.abs(ends - 1.0) < ON])
+            along = np.any(np.all(at_bound, axis=2), axis=(0, 2))
             self._along_bounds = Outlines.of(pieces[along], ON) if along.any() else _NOWHERE
         assert self._along_bounds is not None
         return np.asarray(self._along_bounds.within(share) == NEAR)

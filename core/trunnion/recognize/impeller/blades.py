@@ -129,7 +129,7 @@ def _roles(
     """Return the faces of a blade by role."""
     largest = {s: max(float(graph.area[r]) for r in rows if sense[r] == s) for s in (1, -1)}
     small = {r for r in rows if sense[r] and graph.area[r] < WALL * largest[sense[r]]}
-    halves = {r for r in small if _is_half(graph, r, rows, sense)}
+    halves = {r for r in small if _is_half(graph, r, rows, sense) or _is_cut(graph, r, rows, sense)}
     ends: dict[str, list[int]] = {SHROUD: [], LEADING_EDGE: [], TRAILING_EDGE: []}
     edges = [r for r in rows if not sense[r] or r in halves]
     for row in edges:
@@ -151,6 +151,16 @@ def _roles(
 def _is_half(graph: FaceGraph, row: int, rows: tuple[int, ...], sense: dict[int, int]) -> bool:
     """Return whether a face runs smoothly into one of the other sense: half of an edge that is rounded in two pieces."""
     return any(sense.get(o, 0) == -sense[row] and o in rows for o in graph.neighbours(row, SMOOTH))
+
+
+def _is_cut(graph: FaceGraph, row: int, rows: tuple[int, ...], sense: dict[int, int]) -> bool:
+    """Return whether walls of both senses fall away from a face at sharp edges: an end that is cut off square to the blade."""
+    sharp = {
+        sense[o]
+        for o in graph.neighbours(row, CONVEX)
+        if o in rows and graph.area[o] > graph.area[row]
+    }
+    return {1, -1} <= sharp
 
 
 def _rounds_tip(graph: FaceGraph, row: int, tip: list[int]) -> bool:

@@ -150,8 +150,9 @@ def _carriers(
     normal = {r: samples.normal[samples.of(r)].mean(axis=0) for r in rows}
     out = sum(float(roots[r] * normal[r][2]) for r in rows if normal[r][0] > LOOKS_OUT)
     out -= sum(float(roots[r] * normal[r][2]) for r in rows if normal[r][0] < -LOOKS_OUT)
-    if abs(out) <= COINCIDENT and rows:
-        inner = min(rows, key=lambda r: (float(samples.meridian[samples.of(r), 0].min()), r))
+    across = [r for r in rows if abs(normal[r][2]) > LOOKS_OUT]
+    if abs(out) <= COINCIDENT and across:
+        inner = min(across, key=lambda r: (float(samples.meridian[samples.of(r), 0].min()), r))
         out = float(normal[inner][2])
     inlet = 1.0 if out >= 0.0 else -1.0
     hub = tuple(

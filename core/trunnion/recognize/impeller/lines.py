@@ -215,8 +215,8 @@ def _side_edge(graph: FaceGraph, frame: Frame, end: BladeEnd, side: int) -> Floa
 
 
 def _height(points: Floats, hub: MeridianCurve) -> Floats:
-    place = meridian_of(points)
-    return np.asarray(np.linalg.norm(place - hub.foot(place)[0], axis=1))
+    position = meridian_of(points)
+    return np.asarray(np.linalg.norm(position - hub.foot(position)[0], axis=1))
 
 
 def _fitted(points: Floats, hub: MeridianCurve) -> Floats:

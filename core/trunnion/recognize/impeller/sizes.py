@@ -42,7 +42,7 @@ from trunnion.recognize.impeller.lines import (
 )
 from trunnion.recognize.impeller.walls import (
     RULED,
-    Place,
+    SizePoint,
     largest_lean,
     ruling_deviation,
     thickness,
@@ -227,18 +227,18 @@ class ImpellerSizes:
         ]
         if all(len(side.point) for side in sides):
             walls = blade.with_role(PRESSURE, SUCTION)
-            for name, place in zip(
+            for name, position in zip(
                 ("blade_thickness", "blade_thickness_max"), thickness(*sides), strict=True
             ):
-                yield self._placed(name, place, walls, blade.id)
+                yield self._point_entry(name, position, walls, blade.id)
 
     def _walls(self) -> Iterator[SizeEntry]:
         walls = [t for f in self._examples for t in f.with_role(PRESSURE, SUCTION)]
         faces = exact_faces(self.part, self.found.frame, walls)
         lean = largest_lean(spread_over(faces, self.progress), self.hub)
-        yield self._placed("largest_lean", lean, walls, PART)
+        yield self._point_entry("largest_lean", lean, walls, PART)
         worst = ruling_deviation(faces, self.hub, self.progress)
-        yield self._placed("ruling_deviation", worst, walls, PART)
+        yield self._point_entry("ruling_deviation", worst, walls, PART)
         yield self._entry("ruled", float(worst.value <= RULED), walls)
 
     def _meridians(self) -> Iterator[SizeEntry]:
@@ -257,13 +257,15 @@ class ImpellerSizes:
                     curve=tuple(rounded(v) for v in curve.thinned(CURVE).ravel().tolist()),
                 )
 
-    def _placed(self, name: str, place: Place, faces: Sequence[int], feature: str) -> SizeEntry:
-        world = self.found.frame.to_world(np.array(place.at)) if place.at else None
+    def _point_entry(
+        self, name: str, position: SizePoint, faces: Sequence[int], feature: str
+    ) -> SizeEntry:
+        world = self.found.frame.to_world(np.array(position.at)) if position.at else None
         at = self._at(faces) if world is None else _point(world)
         unit = "degrees" if name.endswith("lean") else "mm"
         return SizeEntry(
             name=name,
-            value=rounded(place.value),
+            value=rounded(position.value),
             unit=unit,
             feature=feature,
             faces=tuple(faces),

@@ -10,10 +10,17 @@ import numpy as np
 from trunnion_gui.look.colours import Theme
 
 
-def draw_label(view: Any, text: str, at: tuple[float, ...], theme: Theme) -> None:
-    """Write a text at a point of the part, or nothing when the text is empty."""
-    view.remove_actor("size", render=False)
-    view.remove_actor("size-labels", render=False)
+def draw_label(
+    view: Any, text: str, at: tuple[float, ...], theme: Theme, to: tuple[float, ...] = ()
+) -> None:
+    """Write a text at a point of the part, or nothing when the text is empty; a distance has a line to the point `to`, its text midway."""
+    for name in ("size", "size-labels", "size-points", "dimension"):
+        view.remove_actor(name, render=False)
+    if text and len(to) == len(at):
+        view.add_lines(
+            np.array([at, to], dtype=float), color=theme.selection, width=4, name="dimension"
+        )
+        at = tuple(0.5 * (a + b) for a, b in zip(at, to, strict=True))
     if text:
         view.add_point_labels(
             np.array([at], dtype=float),

@@ -1,0 +1,1 @@
+"""Impellers in the window."""

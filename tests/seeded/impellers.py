@@ -1,0 +1,222 @@
+"""Random impellers with truth by construction: counts, rows of splitters, wrap, thickness, bolt circles, and what files do to them.
+
+Blades are ruled from below the hub to above the shroud, cut off by the shroud's envelope and at the outlet radius, and stand on a turned
+hub. What is random of a file: turned to a skew axis, mirrored, in inches, hub cut in sectors, walls in two pieces, root fillets or none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from math import cos, radians, sin
+from random import Random
+from typing import Any
+
+import cadquery as cq
+
+STATIONS = 9
+"""Points along a blade's curves."""
+BELOW, ABOVE = -0.35, 1.2
+"""Where the rulings begin and end, in shares of the way from hub to shroud."""
+Meridian = Callable[[float], tuple[float, float]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeededImpeller:
+    """A random wheel: its solid (OCP, mm), the unit of its file, and its truth: counts by kind, how many faces each wall has, the sense in
+    which it turns about the direction to its inlet, diameters of outlet and bore, root fillets (0 where they are sharp)."""
+
+    name: str
+    shape: Any
+    unit: str
+    counts: dict[str, int]
+    wall_faces: int
+    turns: float
+    outlet_diameter: float
+    bore_diameter: float
+    root_fillet: float
+
+
+def impeller(seed: int, fillet: bool = False) -> SeededImpeller:
+    """Return the random impeller of a seed."""
+    draw = Random(f"impeller {seed}")
+    radius = draw.uniform(30.0, 90.0)
+    count, rows = draw.randint(5, 11), draw.choice((0, 1, 1, 2))
+    height, outlet = radius * draw.uniform(0.55, 0.8), radius * draw.uniform(0.09, 0.14)
+    inner, eye = radius * draw.uniform(0.2, 0.26), radius * draw.uniform(0.5, 0.6)
+    hub = _meridian((inner, height), (inner * 1.05, 0.12 * height), (radius * 1.02, 0.0))
+    shroud = _meridian((eye, height), (eye * 1.04, outlet + 0.15 * height), (radius * 1.02, outlet))
+    wrap, sense = radians(draw.uniform(25.0, 55.0)), draw.choice((1.0, -1.0))
+    thick = radius * draw.uniform(0.018, 0.026)
+    pieces, sectors = draw.choice((1, 1, 2)), draw.choice((1, 1, 2, count))
+    starts = [
+        draw.uniform(0.06, 0.1),
+        *sorted(draw.uniform(0.3, 0.5) + 0.18 * k for k in range(rows)),
+    ]
+    envelope = _turned([(0.0, height + 1.0), *_curve(shroud, radius), (radius, -1.0), (0.0, -1.0)])
+    back = -radius * draw.uniform(0.06, 0.1)
+    body = _hub([(0.0, height), *_curve(hub, radius), (radius, back), (0.0, back)], sectors)
+    places = [(0, 0.0)]
+    places += [(row, row / (rows + 1.0)) for row in range(1, rows + 1)]
+    tools = []
+    for row, share in places:
+        one = _blade(hub, shroud, starts[row], wrap * sense, thick, pieces).intersect(envelope)
+        turn = 360.0 / count
+        tools += [one.rotate(*AXIS, turn * (k + share)) for k in range(count)]
+    wheel = body.fuse(*tools)
+    root = radius * 0.015 if fillet else 0.0
+    if root:
+        wheel = _footed(wheel, hub, root)
+    bore = inner * draw.uniform(0.35, 0.6)
+    wheel = wheel.cut(cq.Solid.makeCylinder(bore, 4.0 * radius, cq.Vector(0, 0, -2.0 * radius)))
+    holes = draw.choice((0, count + draw.randint(1, 4)))
+    if holes:
+        wheel = wheel.cut(*_bolts(holes, 0.62 * radius, 0.03 * radius, back))
+    if len(wheel.Solids()) != 1 or not wheel.isValid():
+        raise ValueError(f"seed {seed}: no valid solid")
+    mirrored = draw.random() < 0.5
+    if mirrored:
+        wheel = wheel.mirror("XZ")
+    axis = [draw.gauss(0.0, 1.0) for _ in range(3)]
+    if draw.random() < 0.7:
+        wheel = wheel.rotate(cq.Vector(), cq.Vector(*axis), draw.uniform(0.0, 360.0))
+        wheel = wheel.translate(cq.Vector(*(draw.uniform(-200.0, 200.0) for _ in range(3))))
+    counts = {
+        "blade": count,
+        "splitter": count * rows,
+        "hub": 1,
+        "bore": 1,
+        "plane": 2,
+        "profile": 1,
+    }
+    return SeededImpeller(
+        name=f"impeller{seed}",
+        shape=wheel.Solids()[0].wrapped,
+        unit=draw.choice(("mm", "mm", "inch")),
+        counts={k: n for k, n in (counts | {"hole": holes}).items() if n},
+        wall_faces=pieces,
+        turns=-sense * (-1.0 if mirrored else 1.0),
+        outlet_diameter=2.0 * radius,
+        bore_diameter=2.0 * bore,
+        root_fillet=root,
+    )
+
+
+AXIS = (cq.Vector(0, 0, 0), cq.Vector(0, 0, 1))
+
+
+def _meridian(
+    first: tuple[float, float], middle: tuple[float, float], last: tuple[float, float]
+) -> Meridian:
+    """Return a curve of the second degree from s = 0 to 1 that leaves its first point towards the middle one."""
+
+    def at(s: float) -> tuple[float, float]:
+        a, b, c = (1.0 - s) ** 2, 2.0 * s * (1.0 - s), s * s
+        return (
+            a * first[0] + b * middle[0] + c * last[0],
+            a * first[1] + b * middle[1] + c * last[1],
+        )
+
+    return at
+
+
+def _curve(meridian: Meridian, radius: float) -> list[Any]:
+    return ["spline", meridian, radius]
+
+
+def _turned(words: list[Any], degrees: float = 360.0) -> cq.Shape:
+    """Return the solid that an outline sweeps: points, and in between a spline that follows a meridian out to a radius."""
+    sheet, (start, kind, meridian, radius, *rest) = cq.Workplane("XZ"), words
+    assert kind == "spline"
+    points = [meridian(k / 24.0) for k in range(25)]
+    last = next(k for k, p in enumerate(points) if p[0] >= radius)
+    (r0, z0), (r1, z1) = points[last - 1], points[last]
+    share = (radius - r0) / (r1 - r0)
+    points = [*points[:last], (radius, z0 + share * (z1 - z0))]
+    first = points[0]
+    sheet = sheet.moveTo(*start).lineTo(first[0], start[1])
+    if abs(first[1] - start[1]) > 1e-9:
+        sheet = sheet.lineTo(*first)
+    sheet = sheet.spline(points[1:], includeCurrent=True)
+    for point in rest:
+        sheet = sheet.lineTo(*point)
+    return sheet.close().revolve(degrees, (0, 0, 0), (0, 1, 0)).val()
+
+
+def _hub(words: list[Any], sectors: int) -> cq.Shape:
+    """Return the hub's solid, its faces cut in sectors."""
+    if sectors == 1:
+        return _turned(words)
+    one = _turned(words, 360.0 / sectors)
+    parts = [one.rotate(*AXIS, 360.0 * k / sectors) for k in range(sectors)]
+    return parts[0].fuse(*parts[1:])
+
+
+def _blade(
+    hub: Meridian, shroud: Meridian, start: float, wrap: float, thick: float, pieces: int
+) -> cq.Shape:
+    """Return a blade's solid: two ruled walls in pieces, closed below the hub, above the shroud, at its start and beyond the outlet."""
+
+    def point(s: float, span: float, side: float) -> cq.Vector:
+        (r0, z0), (r1, z1) = hub(s), shroud(s)
+        r, z = r0 + span * (r1 - r0), z0 + span * (z1 - z0)
+        angle = wrap * s + side * 0.5 * thick / max(r, 0.3 * r1)
+        return cq.Vector(r * cos(angle), r * sin(angle), z)
+
+    def rail(low: float, high: float, span: float, side: float) -> cq.Edge:
+        steps = [low + (high - low) * k / (STATIONS - 1) for k in range(STATIONS)]
+        return cq.Edge.makeSpline([point(s, span, side) for s in steps])
+
+    ends = [start + (1.0 - start) * k / pieces for k in range(pieces + 1)]
+    faces = []
+    for low, high in pairwise(ends):
+        rails = {
+            (span, side): rail(low, high, span, side)
+            for span in (BELOW, ABOVE)
+            for side in (1.0, -1.0)
+        }
+        faces += [cq.Face.makeRuledSurface(rails[BELOW, s], rails[ABOVE, s]) for s in (1.0, -1.0)]
+        faces += [
+            cq.Face.makeRuledSurface(rails[span, 1.0], rails[span, -1.0]) for span in (BELOW, ABOVE)
+        ]
+    for s in (start, 1.0):
+        lines = [
+            cq.Edge.makeLine(point(s, BELOW, side), point(s, ABOVE, side)) for side in (1.0, -1.0)
+        ]
+        faces.append(cq.Face.makeRuledSurface(*lines))
+    shell = cq.Shell.makeShell(faces)
+    return cq.Solid.makeSolid(shell).fix()
+
+
+def _footed(wheel: cq.Shape, hub: Meridian, root: float) -> cq.Shape:
+    """Return a wheel with its roots rounded."""
+    near = [hub(k / 400.0) for k in range(401)]
+
+    def off(p: cq.Vector) -> float:
+        r = (p.x * p.x + p.y * p.y) ** 0.5
+        return min(((r - a) ** 2 + (p.z - b) ** 2) ** 0.5 for a, b in near)
+
+    roots = [
+        e
+        for e in wheel.Edges()
+        if e.geomType() == "BSPLINE"
+        and all(off(p) < 0.1 for p in e.positions((0.0, 0.3, 0.6, 1.0)))
+    ]
+    return wheel.fillet(root, roots)
+
+
+def _bolts(count: int, radius: float, bolt: float, back: float) -> list[cq.Shape]:
+    """Return blind holes from the back, evenly on a circle."""
+    return [
+        cq.Solid.makeCylinder(
+            bolt,
+            0.6 * abs(back),
+            cq.Vector(
+                radius * cos(radians(360.0 * k / count)),
+                radius * sin(radians(360.0 * k / count)),
+                back,
+            ),
+        )
+        for k in range(count)
+    ]
