@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from trunnion.plan.channel.gap import NO_TOE, U_BEYOND, Camber, Gap
-from trunnion.plan.channel.meridian import Meridian, MeridianCurve
+from trunnion.plan.channel.blade_channel import NO_TOE, U_BEYOND, BladeChannel, Camber
+from trunnion.plan.channel.meridian import Meridian, MeridianSpline
 
 HUB_RADIUS, SHROUD_RADIUS = 30.0, 20.0
 """mm: radii of the quarter circles in the meridian, both about (40, 32)."""
@@ -14,9 +14,9 @@ SWEEP, HALF_THICK = 0.6, 0.03
 """rad that blades go round the axis from inlet to outlet, and their half thickness."""
 
 
-def quarter(radius: float) -> MeridianCurve:
+def quarter(radius: float) -> MeridianSpline:
     turn = np.linspace(np.pi, 1.5 * np.pi, 40)
-    return MeridianCurve(
+    return MeridianSpline(
         rows=np.column_stack([40.0 + radius * np.cos(turn), 32.0 + radius * np.sin(turn)])
     )
 
@@ -33,6 +33,6 @@ def camber(angle: float = 0.0) -> Camber:
     return Camber(angle=nets[0], sides=(nets[1], nets[2]), toes=(NO_TOE, NO_TOE))
 
 
-def gap(count: int = 9) -> Gap:
-    """Return the gap between two of so many blades."""
-    return Gap(meridian=meridian(), lower=camber(), upper=camber(2.0 * np.pi / count))
+def channel(count: int = 9) -> BladeChannel:
+    """Return the channel between two of so many blades."""
+    return BladeChannel(meridian=meridian(), lower=camber(), upper=camber(2.0 * np.pi / count))

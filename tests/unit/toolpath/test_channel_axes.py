@@ -10,8 +10,8 @@ import pytest
 from leaning_tools import cutter
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.toolpath.contact_passes.open_axes import open_axes
-from trunnion.toolpath.contact_passes.orbit import OrbitParameters, copied, orbited
 from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contact_passes.sphere_links import SphereLinkParameters, copied, linked_round
 from trunnion.toolpath.motion.reorient import ClearanceSphere
 
 SPHERE = ClearanceSphere(centre=np.zeros(3), radius=50.0)
@@ -31,7 +31,9 @@ def found(low, high, wanted=(0.0, 0.0, 1.0)):
     point = np.column_stack([np.arange(5.0), np.zeros(5), np.zeros(5)])
     normal = np.tile([0.0, 0.0, 1.0], (5, 1))
     axis = np.tile(np.array(wanted) / np.linalg.norm(wanted), (5, 1))
-    return open_axes(point, normal, axis, cutter("ball", 6.0, 3.0), within(low, high), math.radians(85.0))
+    return open_axes(
+        point, normal, axis, cutter("ball", 6.0, 3.0), within(low, high), math.radians(85.0)
+    )
 
 
 def test_the_wanted_axis_stays_where_nothing_is_near():
@@ -60,8 +62,8 @@ def straight(y: float) -> Pass:
     return Pass(tip=tip, axis=axis, normal=axis)
 
 
-def parameters(near: float) -> OrbitParameters:
-    return OrbitParameters(
+def parameters(near: float) -> SphereLinkParameters:
+    return SphereLinkParameters(
         near=near,
         turn=0.5,
         feed=1000.0,
@@ -73,19 +75,19 @@ def parameters(near: float) -> OrbitParameters:
 
 
 def test_passes_side_by_side_are_linked_at_feed():
-    path = orbited([straight(0.0), straight(1.0).reversed()], parameters(2.0))
+    path = linked_round([straight(0.0), straight(1.0).reversed()], parameters(2.0))
     assert (path.mark == Mark.LINK).sum() == 1
     rapid = path.motion == Motion.RAPID
     assert rapid.tolist() == [True, True, *[False] * (len(path) - 3), True]
 
 
 def test_passes_of_other_groups_are_not():
-    path = orbited([straight(0.0), straight(1.0).reversed()], parameters(2.0), [0, 1])
+    path = linked_round([straight(0.0), straight(1.0).reversed()], parameters(2.0), [0, 1])
     assert (path.mark == Mark.LINK).sum() == 0
 
 
 def test_rapids_turn_the_tool_only_outside_of_the_sphere():
-    one = orbited([straight(0.0), straight(20.0)], parameters(2.0))
+    one = linked_round([straight(0.0), straight(20.0)], parameters(2.0))
     path = copied(one, (0.0, 2.0, 4.0), SPHERE)
     turned = np.flatnonzero(np.linalg.norm(np.diff(path.axis, axis=0), axis=1) > 1e-9) + 1
     for rows in (turned - 1, turned):
@@ -95,7 +97,7 @@ def test_rapids_turn_the_tool_only_outside_of_the_sphere():
 
 
 def test_copies_are_the_path_turned_about_the_axis_from_upright_to_upright():
-    one = orbited([straight(0.0)], parameters(2.0))
+    one = linked_round([straight(0.0)], parameters(2.0))
     path = copied(one, (0.0, 0.5 * math.pi), SPHERE)
     cut = path.position[path.mark == Mark.CUT]
     half = len(cut) // 2

@@ -41,7 +41,7 @@ def rotor_setup(setup: Setup, rotor: Frame, blank: Blank) -> Setup:
 def channel_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
 ) -> OperationDrive:
-    """Return the channel drive of an operation: what it finishes by its faces, all gaps of a period where it has none or those of a hub."""
+    """Return the channel drive of an operation: what it finishes by its faces, all channels of a period where it has none or those of a hub."""
     rotor = scene.recognition.frame
     setup = rotor_setup(scene.setup, rotor, scene.blank)
     skin = scene.once(
@@ -49,7 +49,7 @@ def channel_driven(
         lambda: scene.context.skin(tolerance.CHORD, progress).moved(WORLD, rotor),
     )
     wheel = scene.once(("wheel",), lambda: wheel_of(scene.recognition, skin))
-    gaps = scene.once(("gaps",), lambda: wheel.gaps(skin))
+    channels = scene.once(("channels",), lambda: wheel.channels(skin))
     around = scene.context.around(scene.setup, rotor, skin, progress)
     faces, tips, roots, named = _first_faces(operation, wheel, scene.recognition)
     low, high = scene.blank.box_in(rotor)
@@ -84,8 +84,8 @@ def channel_driven(
     )
     drive = ChannelDrive(
         surface=surface,
-        gaps=gaps,
-        in_gaps=named,
+        channels=channels,
+        in_channels=named,
         copies=wheel.copies,
         blank=blank,
         inward=scene.once(("blank depth",), lambda: BlankDepth.of(blank, rotor)),
@@ -99,7 +99,7 @@ def _first_faces(
     operation: Operation, wheel: Wheel, recognition: Recognition
 ) -> tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...], bool]:
     """Return of an operation's faces those of the first period, the faces beyond their rims towards shroud and hub, and whether it goes
-    through the gaps: it roughs, or finishes the hub.
+    through the channels: it roughs, or finishes the hub.
 
     Raises `Refused` for faces of no blade and no hub.
     """

@@ -12,44 +12,44 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.blank import Blank
-from trunnion.plan.channel.gap import Gap
+from trunnion.plan.channel.blade_channel import BladeChannel
 from trunnion.plan.channel.meridian import cylindrical
 from trunnion.plan.freeform.drive import SurfaceDrive
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ChannelDrive:
-    """Gaps between the blades of one period, and the surfaces of it.
+    """Channels between the blades of one period, and the surfaces of it.
 
     `surface` has what any surface strategy needs; its `faces` are those of the period that the operation finishes (none where it roughs).
-    `gaps`: one for each gap of the period; `in_gaps` whether the operation goes through them. `copies` (rad): the turns about the axis that
+    `channels`: one for each channel of the period; `in_channels` whether the operation goes through them. `copies` (rad): the turns about the axis that
     bring the period to all of its places, the first one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the
     shroud and towards the hub, where passes begin and end. `inward` says how deep below the blank's surface points (k, 3) lie, negative
     outside. `blank` is the blank itself.
     """
 
     surface: SurfaceDrive
-    gaps: tuple[Gap, ...]
+    channels: tuple[BladeChannel, ...]
     copies: tuple[float, ...]
     blank: Blank
     inward: Callable[[Floats], Floats]
-    in_gaps: bool
+    in_channels: bool
     tips: tuple[int, ...] = ()
     roots: tuple[int, ...] = ()
 
     @property
     def is_empty(self) -> bool:
         """Whether there is nothing to cut."""
-        return not self.in_gaps and not self.surface.faces
+        return not self.in_channels and not self.surface.faces
 
     def rulings(self, points: Floats) -> Floats:
         """Return unit directions (k, 3) from hub to shroud at points (k, 3), along the rulings of the walls beside them."""
         rz, angle = cylindrical(points)
-        uw = self.gaps[0].meridian.coordinates(rz)
+        uw = self.channels[0].meridian.coordinates(rz)
         u, w = uw[:, 0], np.clip(uw[:, 1], 0.0, 1.0)
         best, found = np.full(len(points), np.inf), np.zeros((len(points), 3))
-        for gap in self.gaps:
-            low, high = gap.lower.at(u, w), gap.upper.at(u, w)
+        for channel in self.channels:
+            low, high = channel.lower.at(u, w), channel.upper.at(u, w)
             middle = 0.5 * (low + high)
             near = middle + np.mod(angle - middle + np.pi, 2.0 * np.pi) - np.pi
             v = (near - low) / (high - low)
@@ -58,8 +58,8 @@ class ChannelDrive:
             best[rows] = off[rows]
             inside = np.clip(v[rows], 0.0, 1.0)
             # What lies beyond a camber has the ruling that is there, turned to its own place.
-            turn = near[rows] - gap.angle(u[rows], inside, w[rows])
-            found[rows] = _turned(gap.rulings(u[rows], inside), turn)
+            turn = near[rows] - channel.angle(u[rows], inside, w[rows])
+            found[rows] = _turned(channel.rulings(u[rows], inside), turn)
         return found
 
 

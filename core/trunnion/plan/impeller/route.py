@@ -97,7 +97,7 @@ def make_impeller_route(
     else:
         for stage in plan.stages:
             _plan_stage(state, stage)
-    _tell_turned(state)
+    _add_turned(state)
     return process_of(
         _in_order(state.operations, plan),
         state.findings,
@@ -185,7 +185,7 @@ def _in_order(operations: Sequence[Operation], plan: TypicalPlan) -> list[Operat
     ]
 
 
-def _tell_turned(state: ImpellerPlanState) -> None:
+def _add_turned(state: ImpellerPlanState) -> None:
     """Tell of the features that no operation cuts: what is turned, or bored, before the channels are milled."""
     cut = {t for o in state.operations for t in o.faces}
     others = [f for f in state.recognition if f.kind not in (BLADE, SPLITTER, HUB)]

@@ -1,6 +1,6 @@
 """Finishing of the hub between blades: streamlines from before the leading edges to the outlet, between the root fillets.
 
-Lines of equal share of the way from blade to blade run with the stream; where a gap widens more of them begin between the others. Two more
+Lines of equal share of the way from blade to blade run with the stream; where a channel widens more of them begin between the others. Two more
 follow the toes of the root fillets.
 """
 
@@ -19,8 +19,8 @@ from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.channel_finish import finished, wanted_axes
+from trunnion.toolpath.contact_passes.channel_lines import between_toes, hub_of, lines_between
 from trunnion.toolpath.contact_passes.contacts import Contacts
-from trunnion.toolpath.contact_passes.gap_lines import between_toes, hub_of, lines_between
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -90,7 +90,7 @@ def hub(
     settings: ChannelHubSettings,
     progress: Progress = NO_PROGRESS,
 ) -> Planned:
-    """Return the path over the hub in the gaps of a period and its copies, and what the tool does not come to."""
+    """Return the path over the hub in the channels of a period and its copies, and what the tool does not come to."""
     surface = drive.surface
     if surface.query_for is None:
         raise Refused(
@@ -99,11 +99,11 @@ def hub(
     stepover = stepover_on_plane(tool.corner_radius, surface.height)
     lean = math.radians(settings.lean)
     lines: list[Contacts] = []
-    for gap in progress.part(0.0, 0.1).each(drive.gaps):
-        run = gap.meridian.hub.run
+    for channel in progress.part(0.0, 0.1).each(drive.channels):
+        run = channel.meridian.hub.run
         ends = -settings.before / run, 1.0 + 0.5 * tool.radius / run
         u = np.linspace(*ends, max(2, math.ceil((ends[1] - ends[0]) * run / ALONG)))
-        for some in lines_between(hub_of(gap), u, *between_toes(gap, u), stepover):
+        for some in lines_between(hub_of(channel), u, *between_toes(channel, u), stepover):
             lines += some
     return finished(
         [line.reversed() if k % 2 else line for k, line in enumerate(lines)],

@@ -18,8 +18,8 @@ from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.channel.blade_channel import BladeChannel
 from trunnion.plan.channel.drive import ChannelDrive
-from trunnion.plan.channel.gap import Gap
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
@@ -33,10 +33,10 @@ from trunnion.toolpath.contact_passes.channel_finish import (
     steepest_of,
     wanted_axes,
 )
+from trunnion.toolpath.contact_passes.channel_lines import between_walls, level_of, lines_between
 from trunnion.toolpath.contact_passes.contacts import Contacts
-from trunnion.toolpath.contact_passes.gap_lines import between_walls, level_of, lines_between
-from trunnion.toolpath.contact_passes.orbit import OrbitParameters, copied, orbited
 from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contact_passes.sphere_links import SphereLinkParameters, copied, linked_round
 from trunnion.toolpath.contact_passes.stock_clearance import grown
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.motion.reorient import clearance_sphere
@@ -107,7 +107,7 @@ def rough(
     settings: ChannelRoughSettings,
     progress: Progress = NO_PROGRESS,
 ) -> Planned:
-    """Return the path that roughs the gaps of a period and its copies, and what stays because the tool does not go there."""
+    """Return the path that roughs the channels of a period and its copies, and what stays because the tool does not go there."""
     surface = drive.surface
     if surface.query_for is None:
         raise Refused(
@@ -119,7 +119,7 @@ def rough(
     )
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=steepest_of(tool))
     sphere = clearance_sphere(drive.blank, setup)
-    parameters = OrbitParameters(
+    parameters = SphereLinkParameters(
         near=NEAR * data.width,
         turn=LINK_TURN,
         feed=data.feed,
@@ -130,12 +130,12 @@ def rough(
     )
     lean = math.radians(tool.taper_angle)
     paths, findings = [], []
-    for n, gap in enumerate(drive.gaps):
-        share = progress.part(n / len(drive.gaps), (n + 1) / len(drive.gaps))
+    for n, channel in enumerate(drive.channels):
+        share = progress.part(n / len(drive.channels), (n + 1) / len(drive.channels))
         passes: list[Pass] = []
         groups: list[int] = []
         remaining = []
-        levels = layers(gap, tool, data, allowance, settings.safety)
+        levels = layers(channel, tool, data, allowance, settings.safety)
         for k, lines in enumerate(levels):
             part = share.part(k / len(levels), (k + 1) / len(levels))
             done = passes_along(
@@ -151,7 +151,7 @@ def rough(
             passes += in_turn(done.passes)
             groups += [k] * (len(passes) - len(groups))
             remaining.append(done.remaining)
-        paths.append(orbited(passes, parameters, groups))
+        paths.append(linked_round(passes, parameters, groups))
         findings += _left(float(np.mean(remaining)), surface.feature, tool)
     whole = Toolpath.join([p for p in paths if len(p)])
     return Planned(path=copied(whole, drive.copies, sphere), findings=tuple(findings))
@@ -178,17 +178,17 @@ def grown_query(
 
 
 def layers(
-    gap: Gap, tool: Tool, data: CuttingData, allowance: float, safety: float
+    channel: BladeChannel, tool: Tool, data: CuttingData, allowance: float, safety: float
 ) -> list[list[Contacts]]:
     """Return the lines of contacts of all layers, from the shroud to `allowance` mm over the hub, as they are cut to and fro.
 
     Layers are no deeper than the data's depth, lines no farther apart than their width.
     """
-    run = gap.meridian.hub.run
-    deepest = float(gap.meridian.height(np.linspace(0.0, 1.0, 33)).max())
+    run = channel.meridian.hub.run
+    deepest = float(channel.meridian.height(np.linspace(0.0, 1.0, 33)).max())
     beyond = (widest(tool, deepest) + safety) / run
     u = np.linspace(-beyond, 1.0 + beyond, max(3, math.ceil((1.0 + 2.0 * beyond) * run / ALONG)))
-    tall = gap.meridian.height(np.clip(u, 0.0, 1.0))
+    tall = channel.meridian.height(np.clip(u, 0.0, 1.0))
     count = max(1, math.ceil((deepest - allowance) / data.depth))
     found = []
     for k in range(1, count + 1):
@@ -196,8 +196,8 @@ def layers(
         height = allowance + OFF + share * (tall - allowance)
         w = height / tall
         # As far off the walls as the ball is wide at a level: on the lowest ones it lies in the root fillets.
-        low, high = between_walls(gap, u, w, tool.radius + allowance)
-        surface = level_of(gap, partial(_between, u, height))
+        low, high = between_walls(channel, u, w, tool.radius + allowance)
+        surface = level_of(channel, partial(_between, u, height))
         sets = lines_between(surface, u, low, high, data.width)
         found.append([line for some in sets for line in some])
     return [[line.reversed() if n % 2 else line for n, line in enumerate(lines)] for lines in found]

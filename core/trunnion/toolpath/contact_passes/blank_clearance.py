@@ -15,7 +15,7 @@ AROUND = 8
 """Points on each circle of the body."""
 ALONG = 3.0
 """mm between two circles, about."""
-ROOM = 0.5
+BODY_CLEARANCE = 0.5
 """mm that the body keeps from the blank, beside `tolerance.HOLDER_CLEARANCE`: points on it are so far from each other."""
 
 
@@ -55,7 +55,7 @@ def body_outside(
                 + r * np.sin(turn)[:, None] * y[rows][:, None]
             )
             deep = inward(ring.reshape(-1, 3)).reshape(len(rows), AROUND)
-            found[rows] = deep.max(axis=1) < -(tolerance.HOLDER_CLEARANCE + ROOM)
+            found[rows] = deep.max(axis=1) < -(tolerance.HOLDER_CLEARANCE + BODY_CLEARANCE)
         return found
 
     return outside

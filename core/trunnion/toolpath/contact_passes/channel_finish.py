@@ -21,7 +21,12 @@ from trunnion.toolpath.contact_passes.blank_clearance import body_outside
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.leaning_passes import PointMilledPasses, milled
 from trunnion.toolpath.contact_passes.open_axes import open_axes
-from trunnion.toolpath.contact_passes.orbit import OrbitParameters, Retreat, copied, orbited
+from trunnion.toolpath.contact_passes.sphere_links import (
+    Retreat,
+    SphereLinkParameters,
+    copied,
+    linked_round,
+)
 from trunnion.toolpath.contact_passes.stock_clearance import LEAST_STOCK
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.motion.reorient import clearance_sphere
@@ -30,7 +35,7 @@ OFF = 0.8 * tolerance.CHORD
 """mm that cutters stay off what they finish: the triangles that they are held against stand out of hollow faces by as much."""
 SAMPLES = 260
 """Contacts at which axes are looked for; between them they are even."""
-BESIDE = math.radians(0.5)
+CLEARANCE = math.radians(0.5)
 """How far a cutter's flank stays off the face that its ball touches."""
 LINK_TURN = math.radians(25.0)
 """Largest turn of the axis on a straight link."""
@@ -43,7 +48,7 @@ SMALLEST_LEFTOVER = 0.003
 def steepest_of(tool: Tool) -> float:
     """Return the largest angle, rad, of a cutter's axis and the normal where it touches: its flank stays off the face."""
     flank = tool.taper_angle if tool.form == "taper" else 0.0
-    return 0.5 * math.pi - math.radians(flank) - BESIDE
+    return 0.5 * math.pi - math.radians(flank) - CLEARANCE
 
 
 def wanted_axes(
@@ -102,11 +107,11 @@ def finished(
         surface.allowance + OFF,
         progress,
     )
-    left = left_findings(done, surface.feature, tool)
+    left = remaining_findings(done, surface.feature, tool)
     if not done.passes:
         return Planned(findings=(*findings, *left))
     sphere = clearance_sphere(drive.blank, setup)
-    parameters = OrbitParameters(
+    parameters = SphereLinkParameters(
         near=NEAR * stepover,
         turn=LINK_TURN,
         feed=data.feed,
@@ -115,7 +120,7 @@ def finished(
         retreat=out_of_channel(drive, safety),
         query=queries[-1],
     )
-    path = orbited(done.passes, parameters)
+    path = linked_round(done.passes, parameters)
     return Planned(path=copied(path, drive.copies, sphere), findings=(*findings, *left))
 
 
@@ -161,7 +166,7 @@ def passes_along(
 
 def out_of_channel(drive: ChannelDrive, safety: float) -> Retreat:
     """Return how far a tool is fed out along its axis: as far as blades are high, and a safety distance."""
-    deep = float(drive.gaps[0].meridian.height(np.linspace(0.0, 1.0, 9)).max())
+    deep = float(drive.channels[0].meridian.height(np.linspace(0.0, 1.0, 9)).max())
     return lambda tip, axis: deep + safety
 
 
@@ -195,7 +200,7 @@ def outside_query(
     return both
 
 
-def left_findings(done: PointMilledPasses, feature: str, tool: Tool) -> tuple[Finding, ...]:
+def remaining_findings(done: PointMilledPasses, feature: str, tool: Tool) -> tuple[Finding, ...]:
     if done.remaining < SMALLEST_LEFTOVER:
         return ()
     return (

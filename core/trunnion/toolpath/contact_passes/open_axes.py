@@ -122,15 +122,15 @@ def _free(
     progress: Progress,
 ) -> Bools:
     able = (axes * normal[:, None]).sum(axis=2) >= math.cos(steepest)
-    place, column = np.nonzero(able)
-    found = np.zeros(len(place), dtype=bool)
-    for n in range(0, len(place), POSES):
-        progress.at(n / max(len(place), 1), "Looking for space around the tool")
+    contact, column = np.nonzero(able)
+    found = np.zeros(len(contact), dtype=bool)
+    for n in range(0, len(contact), POSES):
+        progress.at(n / max(len(contact), 1), "Looking for space around the tool")
         some = slice(n, n + POSES)
-        at, axis = place[some], axes[place[some], column[some]]
+        at, axis = contact[some], axes[contact[some], column[some]]
         found[some] = query(tip_at(tool, point[at], normal[at], axis), axis)
     free = np.zeros(able.shape, dtype=bool)
-    free[place, column] = found
+    free[contact, column] = found
     return free
 
 
@@ -180,8 +180,8 @@ def _lattice(widest: float) -> tuple[Floats, Floats]:
     i, j = (
         a.ravel() for a in np.meshgrid(np.arange(-reach, reach + 1), np.arange(-reach, reach + 1))
     )
-    place = SPACING * np.column_stack([i + 0.5 * j, 0.5 * math.sqrt(3.0) * j])
-    size = np.linalg.norm(place, axis=1)
-    place = place[size <= widest + 1e-9]
-    place = place[np.argsort(np.linalg.norm(place, axis=1), kind="stable")]
-    return place, np.linalg.norm(place[:, None] - place[None], axis=2)
+    turn = SPACING * np.column_stack([i + 0.5 * j, 0.5 * math.sqrt(3.0) * j])
+    size = np.linalg.norm(turn, axis=1)
+    turn = turn[size <= widest + 1e-9]
+    turn = turn[np.argsort(np.linalg.norm(turn, axis=1), kind="stable")]
+    return turn, np.linalg.norm(turn[:, None] - turn[None], axis=2)

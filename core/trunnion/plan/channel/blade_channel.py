@@ -1,4 +1,4 @@
-"""Gaps between neighbouring blades: coordinates u along the stream, v from one camber surface to the next, w from hub to shroud."""
+"""Channels between neighbouring blades: coordinates u along the stream, v from one camber surface to the next, w from hub to shroud."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scipy.interpolate import LinearNDInterpolator, RegularGridInterpolator
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.plan.channel.meridian import Meridian, cylindrical, placed
+from trunnion.plan.channel.meridian import Meridian, cylindrical, in_space
 
 U_NODES, W_NODES = 61, 9
 """Nodes of the net that carries a camber surface: bilinear between them it is a few hundredths of a mm off, and no path lies on it."""
@@ -73,7 +73,7 @@ class Camber:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Gap:
+class BladeChannel:
     """The space between two neighbouring blades, `lower` at the smaller angle, in the rotor's frame; splitters count as blades."""
 
     meridian: Meridian
@@ -87,7 +87,7 @@ class Gap:
 
     def at(self, u: Floats, v: Floats, w: Floats) -> Floats:
         """Return points (k, 3) at coordinates (k,)."""
-        return placed(self.meridian.at(u, w), self.angle(u, v, w))
+        return in_space(self.meridian.at(u, w), self.angle(u, v, w))
 
     def hub(self, u: Floats, v: Floats) -> tuple[Floats, Floats]:
         """Return points (k, 3) on the hub and its outward unit normals (k, 3) there."""
@@ -100,7 +100,7 @@ class Gap:
             [across[..., 0] * np.cos(angle), across[..., 0] * np.sin(angle), across[..., 1]],
             axis=-1,
         )
-        return placed(rz, angle), normal
+        return in_space(rz, angle), normal
 
     def rulings(self, u: Floats, v: Floats) -> Floats:
         """Return unit directions (k, 3) from the hub to the shroud along lines of equal u and v: between the walls' own rulings."""
@@ -163,27 +163,29 @@ def _net(uw: Floats, angle: Floats, u: Floats, w: Floats) -> Floats:
 
 
 def _carried_on(at: Floats, row: Floats, tail: int) -> Floats:
-    """Return a row (k,) of a net without gaps: straight between what is known, and on beyond by the line through the last of it."""
+    """Return a row (k,) of a net without channels: straight between what is known, and on beyond by the line through the last of it."""
     known: Bools = np.isfinite(row)
     if known.sum() < tail:
         return np.full(len(row), np.nan)
-    place, value = at[known], row[known]
-    out = np.interp(at, place, value)
+    known_at, value = at[known], row[known]
+    out = np.interp(at, known_at, value)
     for beyond, some, end in (
-        (at < place[0], slice(0, tail), 0),
-        (at > place[-1], slice(-tail, None), -1),
+        (at < known_at[0], slice(0, tail), 0),
+        (at > known_at[-1], slice(-tail, None), -1),
     ):
-        slope = np.polyfit(place[some], value[some], 1)[0]
-        out[beyond] = value[end] + slope * (at[beyond] - place[end])
+        slope = np.polyfit(known_at[some], value[some], 1)[0]
+        out[beyond] = value[end] + slope * (at[beyond] - known_at[end])
     return out
 
 
-def gaps_of(cambers: Sequence[Camber], meridian: Meridian) -> tuple[Gap, ...]:
-    """Return the gaps between blades, each from one to the next around the axis, in the order of the cambers, which go once around."""
+def channels_of(cambers: Sequence[Camber], meridian: Meridian) -> tuple[BladeChannel, ...]:
+    """Return the channels between blades, each from one to the next around the axis, in the order of the cambers, which go once around."""
     found = []
     for lower, upper in zip(cambers, [*cambers[1:], cambers[0]], strict=True):
         turns = math.ceil((lower.mean - upper.mean) / (2.0 * math.pi) - 1e-9)
         found.append(
-            Gap(meridian=meridian, lower=lower, upper=upper.turned(2.0 * math.pi * max(turns, 0)))
+            BladeChannel(
+                meridian=meridian, lower=lower, upper=upper.turned(2.0 * math.pi * max(turns, 0))
+            )
         )
     return tuple(found)

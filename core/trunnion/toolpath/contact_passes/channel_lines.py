@@ -1,6 +1,6 @@
-"""Lines along the stream in a gap between two blades: on the hub, or on levels between hub and shroud.
+"""Lines along the stream in a channel between two blades: on the hub, or on levels between hub and shroud.
 
-Lines of equal share of the way from blade to blade run with the stream. A gap widens: where they would lie too far apart, more of them
+Lines of equal share of the way from blade to blade run with the stream. A channel widens: where they would lie too far apart, more of them
 begin between the others. Each is there only between the two walls, or the toes of their fillets.
 """
 
@@ -12,20 +12,20 @@ from collections.abc import Callable
 import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats
-from trunnion.plan.channel.gap import Gap
+from trunnion.plan.channel.blade_channel import BladeChannel
 from trunnion.toolpath.contact_passes.contacts import Contacts
 
 SHORT = 3
 """Contacts that a line has at least."""
 FALLEN = 3
-"""By how much more lines lie where a gap is too wide for those that there are: each gets one to both sides."""
+"""By how much more lines lie where a channel is too wide for those that there are: each gets one to both sides."""
 STEP = 0.05
 """Share of the way from hub to shroud over which a wall's lean is taken."""
-BESIDE, TOE_BESIDE = 0.05, 0.03
+CLEARANCE, TOE_CLEARANCE = 0.05, 0.03
 """mm more that lines stay off walls, and off toes: what nets and triangles may be off."""
 
 Surface = Callable[[Floats, Floats], tuple[Floats, Floats]]
-"""From u and v (k,) to points and normals (k, 3) of a level of a gap."""
+"""From u and v (k,) to points and normals (k, 3) of a level of a channel."""
 
 
 def lines_between(
@@ -59,49 +59,49 @@ def lines_between(
         count *= FALLEN
 
 
-def hub_of(gap: Gap) -> Surface:
-    """Return the hub of a gap."""
-    return gap.hub
+def hub_of(channel: BladeChannel) -> Surface:
+    """Return the hub of a channel."""
+    return channel.hub
 
 
-def level_of(gap: Gap, height: Callable[[Floats], Floats]) -> Surface:
-    """Return a level of a gap, as high over the hub as `height` says in mm at u (k,); its normals are the rulings."""
+def level_of(channel: BladeChannel, height: Callable[[Floats], Floats]) -> Surface:
+    """Return a level of a channel, as high over the hub as `height` says in mm at u (k,); its normals are the rulings."""
 
     def surface(u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        w = height(u) / gap.meridian.height(np.clip(u, 0.0, 1.0))
-        return gap.at(u, v, w), gap.rulings(u, v)
+        w = height(u) / channel.meridian.height(np.clip(u, 0.0, 1.0))
+        return channel.at(u, v, w), channel.rulings(u, v)
 
     return surface
 
 
-def between_walls(gap: Gap, u: Floats, w: Floats, off: float) -> tuple[Floats, Floats]:
-    """Return the v (nu,), (nu,) that lie `off` mm off the walls of a gap at u and w (nu,); off the cambers before the leading edges."""
-    low, high = gap.lower.at(u, w), gap.upper.at(u, w)
-    radius = np.maximum(gap.meridian.at(u, w)[:, 0], 1e-3)
-    tall = gap.meridian.height(np.clip(u, 0.0, 1.0))
+def between_walls(channel: BladeChannel, u: Floats, w: Floats, off: float) -> tuple[Floats, Floats]:
+    """Return the v (nu,), (nu,) that lie `off` mm off the walls of a channel at u and w (nu,); off the cambers before the leading edges."""
+    low, high = channel.lower.at(u, w), channel.upper.at(u, w)
+    radius = np.maximum(channel.meridian.at(u, w)[:, 0], 1e-3)
+    tall = channel.meridian.height(np.clip(u, 0.0, 1.0))
     ends = []
-    for camber, side, sign in ((gap.lower, 1, 1.0), (gap.upper, 0, -1.0)):
+    for camber, side, sign in ((channel.lower, 1, 1.0), (channel.upper, 0, -1.0)):
         wall = np.where(u >= 0.0, camber.side(side, u, w), camber.at(u, w))
-        place = gap.meridian.at(u, w)
-        run = np.linalg.norm(np.gradient(place, axis=0), axis=1)
+        rz = channel.meridian.at(u, w)
+        run = np.linalg.norm(np.gradient(rz, axis=0), axis=1)
         along = radius * np.gradient(wall) / np.maximum(run, 1e-6)
         rise = camber.side(side, u, w + STEP) - camber.side(side, u, w - STEP)
         inside = np.clip(w + STEP, 0.0, 1.0) - np.clip(w - STEP, 0.0, 1.0)
         across = radius * rise / (inside * tall)
         # Across a wall that is swept and leans it is farther round the axis than square to the wall: by the length of its gradient.
-        ends.append(wall + sign * (off + BESIDE) * np.sqrt(1.0 + along**2 + across**2) / radius)
+        ends.append(wall + sign * (off + CLEARANCE) * np.sqrt(1.0 + along**2 + across**2) / radius)
     span = high - low
     return (ends[0] - low) / span, (ends[1] - low) / span
 
 
-def between_toes(gap: Gap, u: Floats) -> tuple[Floats, Floats]:
-    """Return the v (nu,), (nu,) of the toes of a gap's blades at u (nu,)."""
+def between_toes(channel: BladeChannel, u: Floats) -> tuple[Floats, Floats]:
+    """Return the v (nu,), (nu,) of the toes of a channel's blades at u (nu,)."""
     zero = np.zeros_like(u)
-    low, high = gap.lower.at(u, zero), gap.upper.at(u, zero)
-    off = TOE_BESIDE / gap.meridian.at(u, zero)[:, 0]
+    low, high = channel.lower.at(u, zero), channel.upper.at(u, zero)
+    off = TOE_CLEARANCE / channel.meridian.at(u, zero)[:, 0]
     return (
-        (gap.lower.toe(1, u) + off - low) / (high - low),
-        (gap.upper.toe(0, u) - off - low) / (high - low),
+        (channel.lower.toe(1, u) + off - low) / (high - low),
+        (channel.upper.toe(0, u) - off - low) / (high - low),
     )
 
 

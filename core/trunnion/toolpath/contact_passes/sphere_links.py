@@ -28,7 +28,7 @@ POSE = ("tip", "axis")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OrbitParameters:
+class SphereLinkParameters:
     """How passes are linked: those that begin within `near` mm of the end of the one before, with an axis that turns by less than `turn`
     rad, straight at feed; the others round the sphere. `feed` mm/min cuts, `link_feed` links."""
 
@@ -41,8 +41,8 @@ class OrbitParameters:
     query: ClearanceQuery
 
 
-def orbited(
-    passes: Sequence[Pass], parameters: OrbitParameters, groups: Sequence[int] | None = None
+def linked_round(
+    passes: Sequence[Pass], parameters: SphereLinkParameters, groups: Sequence[int] | None = None
 ) -> Toolpath:
     """Return the path that cuts passes in their order, without the way to its beginning and from its end: a rapid leads to its first pose,
     outside along the axis, and another one to its last. `groups` (one a pass): only passes of one group are linked straight."""
@@ -127,7 +127,7 @@ def _turned(path: Toolpath, angle: float) -> Toolpath:
 
 
 def _straight(
-    passes: Sequence[Pass], parameters: OrbitParameters, groups: Sequence[int]
+    passes: Sequence[Pass], parameters: SphereLinkParameters, groups: Sequence[int]
 ) -> list[bool]:
     """Return for each pass but the last whether the next one is reached straight at feed."""
     if len(passes) < 2:
@@ -148,7 +148,7 @@ def _straight(
 class _Blocks:
     """A path in the making."""
 
-    def __init__(self, parameters: OrbitParameters) -> None:
+    def __init__(self, parameters: SphereLinkParameters) -> None:
         self._parameters = parameters
         self._parts: list[tuple[Floats, Floats, float, Mark]] = []
 
