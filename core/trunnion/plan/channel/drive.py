@@ -22,7 +22,7 @@ class ChannelDrive:
     """Channels between the blades of one period, and the surfaces of it.
 
     `surface` has what any surface strategy needs; its `faces` are those of the period that the operation finishes (none where it roughs).
-    `channels`: one for each channel of the period; `in_channels` whether the operation goes through them. `copies` (rad): the turns about the axis that
+    `channels`: those of the period; `in_channels` whether the operation goes through them. `copies` (rad): the turns about the axis that
     bring the period to all of its places, the first one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the
     shroud and towards the hub, where passes begin and end. `inward` says how deep below the blank's surface points (k, 3) lie, negative
     outside. `blank` is the blank itself.

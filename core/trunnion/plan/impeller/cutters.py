@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
-from trunnion.plan.channel.wheel import ROOT, WALLS, Wheel
+from trunnion.plan.impeller.wheel import ROOT, WALLS, Wheel
 
 FACING = -0.5
 """Largest cosine of the angle between the normals of two places that face each other over a channel."""

@@ -9,16 +9,16 @@ from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.channel.build import channel_driven
 from trunnion.plan.channel.drive import ChannelDrive
-from trunnion.plan.channel.wheel import wheel_of
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.feasibility import too_large
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
+from trunnion.plan.impeller.drives import channel_driven
 from trunnion.plan.impeller.route import CUTTER_RULES, make_impeller_route
 from trunnion.plan.impeller.settings import ImpellerRouteSettings
+from trunnion.plan.impeller.wheel import wheel_of
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.typical import typical_plan

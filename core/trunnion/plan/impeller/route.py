@@ -14,7 +14,6 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.channel.wheel import BLADE, EDGES, HUB, ROOT, SPLITTER, WALLS, Wheel
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
@@ -25,6 +24,7 @@ from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
 from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, sizes_of, through_channel
 from trunnion.plan.impeller.settings import ImpellerRouteSettings
+from trunnion.plan.impeller.wheel import BLADE, EDGES, HUB, ROOT, SPLITTER, WALLS, Wheel
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.typical import typical_plan

@@ -1,7 +1,7 @@
 """Finishing of the hub between blades: streamlines from before the leading edges to the outlet, between the root fillets.
 
-Lines of equal share of the way from blade to blade run with the stream; where a channel widens more of them begin between the others. Two more
-follow the toes of the root fillets.
+Lines of equal share of the way from blade to blade run with the stream; where a channel widens more of them begin between the others. Two
+more follow the toes of the root fillets.
 """
 
 from __future__ import annotations

@@ -234,7 +234,7 @@ def _left(share: float, feature: str, tool: Tool) -> list[Finding]:
         return []
     return [
         warning(
-            "channel.left",
+            "wheel.left",
             f"{tool.name} does not go on {trimmed(100.0 * share, 0)} % of the way through the channels",
             feature,
             remedy="rough what is left with a smaller cutter, or choose a smaller allowance",

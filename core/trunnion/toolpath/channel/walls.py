@@ -120,7 +120,7 @@ def _lines(
         lines = tuple(scallop_passes(surface, ball, chord, progress))
         findings = (
             info(
-                "channel.pattern",
+                "wheel.pattern",
                 f"{surface.feature}: cut at a constant scallop, for {reason}",
                 surface.feature,
                 remedy="nothing has to be done; other faces beyond the rims make other passes",

@@ -205,7 +205,7 @@ def remaining_findings(done: PointMilledPasses, feature: str, tool: Tool) -> tup
         return ()
     return (
         warning(
-            "channel.left",
+            "wheel.left",
             f"{100.0 * done.remaining:.1f} % of the passes over {feature} stay: {tool.name} finds no way to lean there",
             feature,
             remedy="choose a smaller or longer cutter, or a slimmer holder",

@@ -14,7 +14,10 @@ from trunnion.model.setup import Setup
 from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.channel.blank_depth import BlankDepth
 from trunnion.plan.channel.drive import ChannelDrive
-from trunnion.plan.channel.wheel import (
+from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
+from trunnion.plan.impeller.wheel import (
     BLADE,
     EDGES,
     HUB,
@@ -25,9 +28,6 @@ from trunnion.plan.channel.wheel import (
     Wheel,
     wheel_of,
 )
-from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
-from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
 from trunnion.progress import Progress
 from trunnion.settings import digest
 
@@ -41,7 +41,7 @@ def rotor_setup(setup: Setup, rotor: Frame, blank: Blank) -> Setup:
 def channel_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
 ) -> OperationDrive:
-    """Return the channel drive of an operation: what it finishes by its faces, all channels of a period where it has none or those of a hub."""
+    """Return the channel drive of an operation: its faces of the first period, or where it has none, or those of a hub, all channels."""
     rotor = scene.recognition.frame
     setup = rotor_setup(scene.setup, rotor, scene.blank)
     skin = scene.once(
