@@ -17,6 +17,8 @@ FACING = -0.5
 """Largest cosine of the angle between the normals of two places that face each other over a channel."""
 OVER = 1.0
 """mm that flutes are longer than blades are high: what is above them is thicker."""
+SMALLER = 0.9
+"""Of a fillet's radius: a ball as round as it is touches all of it at once, and flow lines over it lie nowhere."""
 ROUND = 0.01
 """mm by which a cutter may be rounder than a fillet: what fillets are modelled to."""
 SHORT, SHARPEST = 0.05, 0.98
@@ -91,9 +93,21 @@ def through_channel(tools: Sequence[Tool], sizes: WheelSizes, allowance: float) 
 
 
 def in_fillet(tools: Sequence[Tool], sizes: WheelSizes) -> Tool | None:
-    """Return the largest tapered ball that is no larger than the root fillets and the narrowest place."""
-    widest = min(2.0 * (sizes.fillet + ROUND) if sizes.fillet > 0.0 else np.inf, sizes.channel)
-    return _largest(tools, widest, sizes.height + OVER)
+    """Return the largest tapered ball that goes into the root fillets with room to turn in them, and through the narrowest channel."""
+    return _largest(
+        tools,
+        min(2.0 * SMALLER * sizes.fillet if sizes.fillet > 0.0 else np.inf, sizes.channel),
+        sizes.height + OVER,
+    )
+
+
+def on_hub(tools: Sequence[Tool], sizes: WheelSizes) -> Tool | None:
+    """Return the largest tapered ball that is no larger than the root fillets and the narrowest channel: it goes up to their toes."""
+    return _largest(
+        tools,
+        min(2.0 * (sizes.fillet + ROUND) if sizes.fillet > 0.0 else np.inf, sizes.channel),
+        sizes.height + OVER,
+    )
 
 
 def _largest(tools: Sequence[Tool], widest: float, deep: float) -> Tool | None:

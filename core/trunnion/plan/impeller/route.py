@@ -22,7 +22,7 @@ from trunnion.plan.cutting.milling import (
 from trunnion.plan.freeform.cutters.choice import named
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
-from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, sizes_of, through_channel
+from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, on_hub, sizes_of, through_channel
 from trunnion.plan.impeller.settings import ImpellerRouteSettings
 from trunnion.plan.impeller.wheel import BLADE, EDGES, HUB, ROOT, SPLITTER, WALLS, Wheel
 from trunnion.plan.process import process_of
@@ -67,7 +67,7 @@ class ImpellerPlanState:
             return named(self.shop, wanted)
         if rule in (CHANNEL, WALL):
             return through_channel(tools, self.sizes, s.rough_allowance)
-        return in_fillet(tools, self.sizes)
+        return on_hub(tools, self.sizes) if rule == HUB_CUTTER else in_fillet(tools, self.sizes)
 
 
 def make_impeller_route(
