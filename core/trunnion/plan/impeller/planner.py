@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trunnion import tolerance
-from trunnion.findings import BadInput
+from trunnion.findings import BadInput, Finding, Refused, error
 from trunnion.geometry.frame import WORLD
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
@@ -43,17 +43,23 @@ class ImpellerPlanner:
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_impeller_route`, or why the blank fits no machine."""
         route = job.settings_of(RouteSettings)
-        findings = too_large(job.blank, job.setups, job.shop)
+        findings = too_large(job.blank, job.setups, job.shop) or self._without_axes(job)
+        if not findings:
+            skin = job.context.skin(tolerance.CHORD, job.progress)
+            skin = skin.moved(WORLD, job.recognition.frame)
+            try:
+                wheel = wheel_of(job.recognition, skin)
+            except Refused as reason:
+                findings = [_not_planned(job, str(reason), "correct the features")]
         if findings:
             plan = typical_plan(job.shop, job.recognition.family, route.plan, CUTTER_RULES)
             material = job.shop.material(job.blank.material)
             return process_of(
                 (), findings, plan=plan, material=material, setups=job.setups, shop=job.shop
             )
-        skin = job.context.skin(tolerance.CHORD, job.progress).moved(WORLD, job.recognition.frame)
         return make_impeller_route(
             job.recognition,
-            wheel_of(job.recognition, skin),
+            wheel,
             skin,
             job.blank,
             job.setups,
@@ -61,6 +67,17 @@ class ImpellerPlanner:
             route,
             job.settings_of(ImpellerRouteSettings),
         )
+
+    def _without_axes(self, job: RouteJob) -> list[Finding]:
+        if job.shop.machine(job.setups[0].machine).rotary:
+            return []
+        return [
+            _not_planned(
+                job,
+                "channels between blades are milled by a tool that leans, and the machine has no rotary axes",
+                "choose a machine with rotary axes (setup.machine)",
+            )
+        ]
 
     def drive(
         self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
@@ -78,3 +95,7 @@ class ImpellerPlanner:
             scene,
             progress,
         )
+
+
+def _not_planned(job: RouteJob, text: str, remedy: str) -> Finding:
+    return error("route.not-planned", text, *(f.id for f in job.recognition), remedy=remedy)

@@ -92,11 +92,8 @@ def make_impeller_route(
         shop=shop,
         settings=settings,
     )
-    if not state.machine.rotary:
-        state.findings.append(_three_axes(recognition))
-    else:
-        for stage in plan.stages:
-            _plan_stage(state, stage)
+    for stage in plan.stages:
+        _plan_stage(state, stage)
     _add_turned(state)
     return process_of(
         _in_order(state.operations, plan),
@@ -211,13 +208,4 @@ def _no_cutter(state: ImpellerPlanState, stage: Stage) -> Finding:
         *(f.id for f in state.recognition.of_kind(*stage.on)),
         *face_tags(tags),
         remedy="add a slimmer or longer cutter to the tools folder, or leave a smaller allowance",
-    )
-
-
-def _three_axes(recognition: Recognition) -> Finding:
-    return error(
-        "route.not-planned",
-        "channels between blades are milled by a tool that leans, and the machine has no rotary axes",
-        *(f.id for f in recognition),
-        remedy="choose a machine with rotary axes (setup.machine)",
     )

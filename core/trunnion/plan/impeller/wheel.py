@@ -67,7 +67,7 @@ def wheel_of(recognition: Recognition, skin: Skin) -> Wheel:
     tips = tuple(t for f in main for t in f.with_role(*TIP))
     if len(main) < 2 or not hub or not tips:
         raise Refused(
-            "no channels to plan: a wheel needs two blades, tip faces and a hub among its features; correct the features"
+            "no channels to plan: a wheel needs two blades, tip faces and a hub among its features"
         )
     angles = np.array([_angle(skin, f) for f in blades])
     order = np.argsort(angles)
