@@ -43,6 +43,7 @@ class ImpellerPlanner:
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_impeller_route`, or why the blank fits no machine."""
         route = job.settings_of(RouteSettings)
+        job.progress.at(0.0, "looking at the wheel")
         findings = too_large(job.blank, job.setups, job.shop) or self._without_axes(job)
         if not findings:
             skin = job.context.skin(tolerance.CHORD, job.progress)
