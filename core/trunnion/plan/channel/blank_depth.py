@@ -12,9 +12,9 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
-from trunnion.plan.channel.meridian import cylindrical, placed
+from trunnion.plan.channel.meridian import cylindrical, in_space
 
-CELL, BESIDE = 0.4, 3.0
+CELL, CLEARANCE = 0.4, 3.0
 """mm between places of the table, and how far it goes beyond the blank; between them the depth is at most a cell off."""
 ANGLES = (0.0, 1.0, 2.7)
 """rad about the axis at which a blank must look the same to count as round."""
@@ -34,10 +34,12 @@ class BlankDepth:
     def of(blank: Blank, rotor: Frame) -> BlankDepth:
         """Return the depths of a blank in the rotor's frame."""
         low, high = blank.box_in(rotor)
-        radius = np.arange(0.0, float(np.abs([*low[:2], *high[:2]]).max()) + BESIDE + CELL, CELL)
-        height = np.arange(float(low[2]) - BESIDE, float(high[2]) + BESIDE + CELL, CELL)
+        radius = np.arange(0.0, float(np.abs([*low[:2], *high[:2]]).max()) + CLEARANCE + CELL, CELL)
+        height = np.arange(float(low[2]) - CLEARANCE, float(high[2]) + CLEARANCE + CELL, CELL)
         grid = np.stack(np.meshgrid(radius, height, indexing="ij"), axis=-1).reshape(-1, 2)
-        seen = [blank.inward(blank.own(placed(grid, np.full(len(grid), a)), rotor)) for a in ANGLES]
+        seen = [
+            blank.inward(blank.own(in_space(grid, np.full(len(grid), a)), rotor)) for a in ANGLES
+        ]
         table = None
         if max(float(np.abs(s - seen[0]).max()) for s in seen) < tolerance.SEW:
             table = RegularGridInterpolator(
@@ -49,7 +51,7 @@ class BlankDepth:
         """Return how deep below the blank's surface points (k, 3) lie, at least, mm; negative outside."""
         outside = np.maximum(np.maximum(self.low - points, points - self.high), 0.0)
         deep = -np.linalg.norm(outside, axis=1)
-        rows = np.flatnonzero(deep > -0.5 * BESIDE)
+        rows = np.flatnonzero(deep > -0.5 * CLEARANCE)
         if not len(rows):
             return np.asarray(deep)
         if self.table is None:

@@ -17,6 +17,8 @@ from trunnion.geometry.arrays import Floats, floats
 
 KNOT = 0.3
 """mm between the points that a curve is carried through: at a bend of 5 mm radius the cubic is within 0.1 um."""
+NEAR = 0.004
+"""mm between the places of a curve that the nearest one is looked for among."""
 STEPS_U, STEPS_W = 240, 60
 """Places of the net from which the nearest one is the first guess at what coordinates a point has."""
 NEWTON = 4
@@ -26,7 +28,7 @@ BEYOND = 0.25
 
 
 @dataclass(frozen=True, slots=False, eq=False, kw_only=True)
-class MeridianCurve:
+class MeridianSpline:
     """A curve in the meridian plane: rows (k, 2) of radius and height in mm in the order of the stream, begun at a length mm along it.
 
     Lengths from `start` (u = 0) to `end` (u = 1) count; beyond its rows it goes straight on.
@@ -65,7 +67,7 @@ class MeridianCurve:
 
     def nearest(self, point: Floats) -> Floats:
         """Return the lengths mm (k,) along it of the places nearest to points (k, 2)."""
-        length = np.linspace(0.0, self.length, max(2, int(self.length / (0.1 * KNOT))))
+        length = np.linspace(0.0, self.length, max(2, int(self.length / NEAR)))
         return np.asarray(length[cKDTree(self._spline(length)).query(point)[1]])
 
     def places(self, along: Floats) -> Floats:
@@ -73,7 +75,7 @@ class MeridianCurve:
         return np.asarray(self._spline(along))
 
     @staticmethod
-    def through(points: Floats) -> MeridianCurve:
+    def through(points: Floats) -> MeridianSpline:
         """Return the curve through points (n, 2) of a surface of revolution, in any order: it is sorted from its top inwards end to its
         lower outer end, so along radius minus height, which grows along the stream of a centrifugal or mixed-flow wheel."""
         key = points[:, 0] - points[:, 1]
@@ -86,15 +88,15 @@ class MeridianCurve:
             kept.pop()
         if np.linalg.norm(last - kept[-1]) > 0.0:
             kept.append(last)
-        return MeridianCurve(rows=np.array(kept))
+        return MeridianSpline(rows=np.array(kept))
 
 
 @dataclass(frozen=True, slots=False, eq=False, kw_only=True)
 class Meridian:
     """Hub and shroud of a wheel in the rotor's frame: its z is the axis, towards the inlet."""
 
-    hub: MeridianCurve
-    shroud: MeridianCurve
+    hub: MeridianSpline
+    shroud: MeridianSpline
 
     def at(self, u: Floats, w: Floats) -> Floats:
         """Return radius and height (k, 2) of places with coordinates u and w (k,)."""
@@ -142,7 +144,7 @@ def cylindrical(points: Floats) -> tuple[Floats, Floats]:
     )
 
 
-def placed(meridian: Floats, angle: Floats) -> Floats:
+def in_space(meridian: Floats, angle: Floats) -> Floats:
     """Return points (k, 3) from radius and height (k, 2) and the angle (k,) rad about z."""
     return np.stack(
         [

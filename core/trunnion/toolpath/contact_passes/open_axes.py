@@ -23,8 +23,8 @@ from trunnion.toolpath.contact_passes.axis_fields import AxisField
 
 SPACING = math.radians(5.0)
 """Between two axes that are tried: less than the space that a cutter's taper leaves in a channel."""
-WIDEST = math.radians(48.0)
-"""How far from the wanted axis others are tried."""
+WIDEST = math.radians(40.0)
+"""How far from the wanted axis others are tried, unless said."""
 ENOUGH = math.radians(9.0)
 """Space to every side beyond which more is no better."""
 PULL = 0.3
@@ -83,26 +83,27 @@ def open_axes(
     allowance: float = 0.0,
     enough: float = ENOUGH,
     pull: float = PULL,
+    widest: float = WIDEST,
     progress: Progress = NO_PROGRESS,
 ) -> OpenAxes:
     """Return the axes of a tool that touches places (k, 3) of faces with normals (k, 3), near the wanted axes (k, 3), `allowance` mm off.
 
     An axis leans by no more than `steepest` rad from the normal. Of the free ones at a place it is that with the most space to those that
-    are not, up to `enough` rad, less `pull` for every rad off the wanted axis.
+    are not, up to `enough` rad, less `pull` for every rad off the wanted axis; others than that are tried up to `widest` rad off it.
     """
-    lattice, away = _lattice()
+    lattice, away = _lattice(widest)
     axes = _around(wanted, normal, lattice)
     free = _free(point + allowance * normal, normal, axes, tool, query, steepest, progress)
     k, m = free.shape
     space = np.empty((k, m))
     for row in range(k):
         blocked = ~free[row]
-        space[row] = away[:, blocked].min(axis=1) if blocked.any() else WIDEST
+        space[row] = away[:, blocked].min(axis=1) if blocked.any() else widest
     score = np.minimum(space, enough) - pull * np.linalg.norm(lattice, axis=1)
     score = np.where(free, score, -np.inf)
     best = np.argmax(score, axis=1)
     rows = np.arange(k)
-    axis, any_free = axes[rows, best], free.any(axis=1)
+    axis, any_free = axes[rows, best], np.asarray(free.any(axis=1))
     return OpenAxes(
         point=point,
         normal=normal,
@@ -121,15 +122,15 @@ def _free(
     progress: Progress,
 ) -> Bools:
     able = (axes * normal[:, None]).sum(axis=2) >= math.cos(steepest)
-    place, column = np.nonzero(able)
-    found = np.zeros(len(place), dtype=bool)
-    for n in range(0, len(place), POSES):
-        progress.at(n / max(len(place), 1), "Looking for space around the tool")
+    contact, column = np.nonzero(able)
+    found = np.zeros(len(contact), dtype=bool)
+    for n in range(0, len(contact), POSES):
+        progress.at(n / max(len(contact), 1), "Looking for space around the tool")
         some = slice(n, n + POSES)
-        at, axis = place[some], axes[place[some], column[some]]
+        at, axis = contact[some], axes[contact[some], column[some]]
         found[some] = query(tip_at(tool, point[at], normal[at], axis), axis)
     free = np.zeros(able.shape, dtype=bool)
-    free[place, column] = found
+    free[contact, column] = found
     return free
 
 
@@ -173,14 +174,14 @@ def _eased(
 
 
 @cache
-def _lattice() -> tuple[Floats, Floats]:
+def _lattice(widest: float) -> tuple[Floats, Floats]:
     """Return turns (m, 2) rad of a hexagonal lattice round the wanted axis, itself first, and the distances (m, m) between them."""
-    reach = math.ceil(WIDEST / SPACING) + 1
+    reach = math.ceil(widest / SPACING) + 1
     i, j = (
         a.ravel() for a in np.meshgrid(np.arange(-reach, reach + 1), np.arange(-reach, reach + 1))
     )
-    place = SPACING * np.column_stack([i + 0.5 * j, 0.5 * math.sqrt(3.0) * j])
-    size = np.linalg.norm(place, axis=1)
-    place = place[size <= WIDEST + 1e-9]
-    place = place[np.argsort(np.linalg.norm(place, axis=1), kind="stable")]
-    return place, np.linalg.norm(place[:, None] - place[None], axis=2)
+    turn = SPACING * np.column_stack([i + 0.5 * j, 0.5 * math.sqrt(3.0) * j])
+    size = np.linalg.norm(turn, axis=1)
+    turn = turn[size <= widest + 1e-9]
+    turn = turn[np.argsort(np.linalg.norm(turn, axis=1), kind="stable")]
+    return turn, np.linalg.norm(turn[:, None] - turn[None], axis=2)

@@ -7,7 +7,6 @@ from dataclasses import replace
 from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
@@ -15,21 +14,20 @@ from trunnion.model.setup import Setup
 from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.channel.blank_depth import BlankDepth
 from trunnion.plan.channel.drive import ChannelDrive
-from trunnion.plan.channel.gap import Gap
-from trunnion.plan.channel.wheel import (
+from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
+from trunnion.plan.impeller.wheel import (
     BLADE,
+    EDGES,
     HUB,
     ROOT,
     SPLITTER,
     TIP,
     WALLS,
-    EDGES,
     Wheel,
     wheel_of,
 )
-from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
-from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
 from trunnion.progress import Progress
 from trunnion.settings import digest
 
@@ -43,7 +41,7 @@ def rotor_setup(setup: Setup, rotor: Frame, blank: Blank) -> Setup:
 def channel_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
 ) -> OperationDrive:
-    """Return the channel drive of an operation: what it finishes by its faces, all gaps of a period where it has none or those of a hub."""
+    """Return the channel drive of an operation: its faces of the first period, or where it has none, or those of a hub, all channels."""
     rotor = scene.recognition.frame
     setup = rotor_setup(scene.setup, rotor, scene.blank)
     skin = scene.once(
@@ -51,7 +49,7 @@ def channel_driven(
         lambda: scene.context.skin(tolerance.CHORD, progress).moved(WORLD, rotor),
     )
     wheel = scene.once(("wheel",), lambda: wheel_of(scene.recognition, skin))
-    gaps = scene.once(("gaps",), lambda: wheel.gaps(skin))
+    channels = scene.once(("channels",), lambda: wheel.channels(skin))
     around = scene.context.around(scene.setup, rotor, skin, progress)
     faces, tips, roots, named = _first_faces(operation, wheel, scene.recognition)
     low, high = scene.blank.box_in(rotor)
@@ -86,7 +84,8 @@ def channel_driven(
     )
     drive = ChannelDrive(
         surface=surface,
-        gaps=gaps if named else (),
+        channels=channels,
+        in_channels=named,
         copies=wheel.copies,
         blank=blank,
         inward=scene.once(("blank depth",), lambda: BlankDepth.of(blank, rotor)),
@@ -100,7 +99,7 @@ def _first_faces(
     operation: Operation, wheel: Wheel, recognition: Recognition
 ) -> tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...], bool]:
     """Return of an operation's faces those of the first period, the faces beyond their rims towards shroud and hub, and whether it goes
-    through the gaps: it roughs, or finishes the hub.
+    through the channels: it roughs, or finishes the hub.
 
     Raises `Refused` for faces of no blade and no hub.
     """
@@ -125,11 +124,3 @@ def _first_faces(
     raise Refused(
         f"{operation.id}: its faces are no walls, root fillets or hub of the wheel; choose a strategy of the surface family"
     )
-
-
-def in_rotor(skin: Skin, recognition: Recognition) -> Skin:
-    """Return a part's skin in the rotor's frame."""
-    return skin.moved(WORLD, recognition.frame)
-
-
-__all__ = ["Gap", "channel_driven", "in_rotor", "rotor_setup"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,8 +13,8 @@ from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Feature, Recognition
-from trunnion.plan.channel.gap import Camber, Gap, camber_of, gaps_of
-from trunnion.plan.channel.meridian import Meridian, MeridianCurve, cylindrical
+from trunnion.plan.channel.blade_channel import BladeChannel, Camber, camber_of, channels_of
+from trunnion.plan.channel.meridian import Meridian, MeridianSpline, cylindrical
 
 BLADE, SPLITTER, HUB = "blade", "splitter", "hub"
 WALLS, EDGES, TIP, ROOT = (
@@ -43,15 +44,16 @@ class Wheel:
         some = self.blades[: self.period] if first else self.blades
         return tuple(t for f in some if f.kind == kind for t in f.with_role(*roles))
 
-    def gaps(self, skin: Skin) -> tuple[Gap, ...]:
-        """Return the gaps of the first period, from a skin in the rotor's frame."""
+    def channels(self, skin: Skin) -> tuple[BladeChannel, ...]:
+        """Return the channels of the first period, from a skin in the rotor's frame."""
         cambers: list[Camber] = []
         for f in self.blades[: self.period]:
-            cambers.append(camber_of(skin, f.with_role(*WALLS), self.meridian))
+            feet = f.with_role(*ROOT) or f.tags
+            cambers.append(camber_of(skin, f.with_role(*WALLS), feet, self.meridian))
         step = 2.0 * math.pi / len(self.copies)
         closing = [*cambers, cambers[0].turned(step)]
-        pairs = zip(closing[:-1], closing[1:], strict=True)
-        return tuple(g for pair in pairs for g in gaps_of(pair, self.meridian)[:1])
+        pairs = pairwise(closing)
+        return tuple(g for pair in pairs for g in channels_of(pair, self.meridian)[:1])
 
 
 def wheel_of(recognition: Recognition, skin: Skin) -> Wheel:
@@ -65,7 +67,7 @@ def wheel_of(recognition: Recognition, skin: Skin) -> Wheel:
     tips = tuple(t for f in main for t in f.with_role(*TIP))
     if len(main) < 2 or not hub or not tips:
         raise Refused(
-            "no channels to plan: a wheel needs two blades, tip faces and a hub among its features; correct the features"
+            "no channels to plan: a wheel needs two blades, tip faces and a hub among its features"
         )
     angles = np.array([_angle(skin, f) for f in blades])
     order = np.argsort(angles)
@@ -112,7 +114,7 @@ def _meridian(skin: Skin, hub: tuple[int, ...], tips: tuple[int, ...], blade: Fe
     def places(tags: tuple[int, ...]) -> Floats:
         return cylindrical(skin.points[np.unique(skin.triangles[skin.of(tags)])])[0]
 
-    curve, shroud = MeridianCurve.through(places(hub)), MeridianCurve.through(places(tips))
+    curve, shroud = MeridianSpline.through(places(hub)), MeridianSpline.through(places(tips))
     edge = blade.with_role(*EDGES) or blade.with_role(*WALLS)
     line = places(edge)
     # The leading edge's line goes on to the hub through the root fillet: straight from its middle over its innermost place.

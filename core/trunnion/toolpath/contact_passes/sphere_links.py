@@ -23,9 +23,12 @@ from trunnion.toolpath.motion.reorient import ClearanceSphere, turn
 Retreat = Callable[[Floats, Floats], float]
 """From a tip and an axis (3,) to how far in mm a tool is fed out along its axis before it goes on at rapid."""
 
+POSE = ("tip", "axis")
+"""What a pass has of each pose."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OrbitParameters:
+class SphereLinkParameters:
     """How passes are linked: those that begin within `near` mm of the end of the one before, with an axis that turns by less than `turn`
     rad, straight at feed; the others round the sphere. `feed` mm/min cuts, `link_feed` links."""
 
@@ -38,13 +41,15 @@ class OrbitParameters:
     query: ClearanceQuery
 
 
-def orbited(passes: Sequence[Pass], parameters: OrbitParameters) -> Toolpath:
+def linked_round(
+    passes: Sequence[Pass], parameters: SphereLinkParameters, groups: Sequence[int] | None = None
+) -> Toolpath:
     """Return the path that cuts passes in their order, without the way to its beginning and from its end: a rapid leads to its first pose,
-    outside along the axis, and another one to its last."""
+    outside along the axis, and another one to its last. `groups` (one a pass): only passes of one group are linked straight."""
     if not passes:
         return EMPTY
     blocks = _Blocks(parameters)
-    straight = _straight(passes, parameters)
+    straight = _straight(passes, parameters, groups or [0] * len(passes))
     for k, one in enumerate(passes):
         if k and straight[k - 1]:
             blocks.add(one.tip[:1], one.axis[:1], parameters.link_feed, Mark.LINK)
@@ -78,7 +83,7 @@ def copied(path: Toolpath, copies: Sequence[float], sphere: ClearanceSphere) -> 
 def _way(
     start: Floats, start_axis: Floats, end: Floats, end_axis: Floats, sphere: ClearanceSphere
 ) -> Toolpath:
-    """Return the rapids from a pose to another one round the sphere, the last pose not among them, the first one too where it is the top."""
+    """Return the rapids from a pose to another one round the sphere, neither of them among these."""
     tips, axes = [sphere.above(start, start_axis)], [start_axis]
     directions = _over(start_axis, end_axis)
     tips += [sphere.centre + sphere.radius * a for a in directions]
@@ -121,22 +126,17 @@ def _turned(path: Toolpath, angle: float) -> Toolpath:
     return replace(path, position=path.position @ matrix, axis=path.axis @ matrix)
 
 
-def _straight(passes: Sequence[Pass], parameters: OrbitParameters) -> list[bool]:
+def _straight(
+    passes: Sequence[Pass], parameters: SphereLinkParameters, groups: Sequence[int]
+) -> list[bool]:
     """Return for each pass but the last whether the next one is reached straight at feed."""
     if len(passes) < 2:
         return []
-    ends, end_axes, starts, axes = (
-        np.array(rows)
-        for rows in zip(
-            *(
-                (a.tip[-1], a.axis[-1], b.tip[0], b.axis[0])
-                for a, b in zip(passes[:-1], passes[1:], strict=True)
-            ),
-            strict=True,
-        )
-    )
+    ends, end_axes = (np.array([getattr(p, name)[-1] for p in passes[:-1]]) for name in POSE)
+    starts, axes = (np.array([getattr(p, name)[0] for p in passes[1:]]) for name in POSE)
     near = np.linalg.norm(starts - ends, axis=1) <= parameters.near
     near &= angle_between(end_axes, axes) <= parameters.turn
+    near &= np.diff(groups) == 0
     rows = np.flatnonzero(near)
     if len(rows):
         near[rows] = parameters.query(
@@ -148,7 +148,7 @@ def _straight(passes: Sequence[Pass], parameters: OrbitParameters) -> list[bool]
 class _Blocks:
     """A path in the making."""
 
-    def __init__(self, parameters: OrbitParameters) -> None:
+    def __init__(self, parameters: SphereLinkParameters) -> None:
         self._parameters = parameters
         self._parts: list[tuple[Floats, Floats, float, Mark]] = []
 
