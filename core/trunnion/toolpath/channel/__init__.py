@@ -1,1 +1,0 @@
-"""Strategies in the channels of bladed wheels, a module a strategy."""
