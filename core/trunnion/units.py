@@ -23,6 +23,15 @@ SIZE_DECIMALS = 4
 """Sizes of features are given to a tenth of a micrometre: what is beyond is rounding of a file's numbers."""
 
 
+def several(word: str) -> str:
+    """Return an English word for more than one thing.
+
+    >>> several("pocket"), several("boss")
+    ('pockets', 'bosses')
+    """
+    return f"{word}es" if word.endswith(("s", "x", "ch", "sh")) else f"{word}s"
+
+
 def rounded(value: float) -> float:
     """Return a size of a feature without the noise of a file's numbers, and without a negative zero.
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from trunnion.model.feature import Size
-from trunnion.units import trimmed
+from trunnion.units import several, trimmed
 
-_ANGLES = ("lean", "angle", "taper")
+_ANGLES = ("lean", "angle", "taper", "theta", "tilt")
 _PLAIN = ("count_", "n_")
 
 
@@ -39,9 +39,13 @@ def counted(number: int, kind: str) -> str:
 
     >>> counted(13, "pocket"), counted(1, "open_pocket"), counted(13, "型腔")
     ('13 pockets', '1 open pocket', '13 型腔')
+    >>> counted(6, "boss")
+    '6 bosses'
     """
     words = kind_words(kind)
-    return f"{number} {words}" if number == 1 or not words.isascii() else f"{number} {words}s"
+    return (
+        f"{number} {words}" if number == 1 or not words.isascii() else f"{number} {several(words)}"
+    )
 
 
 def duration(seconds: float) -> str:

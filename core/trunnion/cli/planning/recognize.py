@@ -18,6 +18,7 @@ from trunnion.cli.common import (
     with_manual_edits,
 )
 from trunnion.findings import Finding, Severity
+from trunnion.units import several
 
 if TYPE_CHECKING:
     from trunnion.model.feature import Recognition
@@ -115,7 +116,7 @@ def _feature_table(found: Recognition) -> str:
     return (
         table(rows, right=(2,))
         + "\n"
-        + "  ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in found.counts().items())
+        + "  ".join(f"{n} {several(kind) if n > 1 else kind}" for kind, n in found.counts().items())
     )
 
 
