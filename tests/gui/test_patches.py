@@ -139,13 +139,18 @@ def test_local_groups_have_warm_colours_and_the_rest_cold_ones(shown, qtbot):
     assert hue(other) @ hue(warm) > 0.97
 
 
+def own_column(window, number: int) -> int:
+    """Return the column of the features' tree that is the part's own family's first, second or third."""
+    tree = window.docks.features.tree
+    return [c for c in range(3, tree.columnCount()) if not tree.isColumnHidden(c)][number]
+
+
 def test_a_row_shows_faces_size_and_the_mark(shown):
     small = group_at(shown, ON_SMALL[0])
     row = shown.docks.features.item(small.id)
     assert (row.text(0), row.text(1), row.text(2)) == (small.id, "3", "8")
-    assert row.checkState(5) is Qt.CheckState.Checked
+    assert row.checkState(own_column(shown, 2)) is Qt.CheckState.Checked
     assert row.parent().text(0).startswith("Local features")
-    assert not shown.docks.features.tree.isColumnHidden(5)
 
 
 def test_an_id_keeps_its_number_when_there_is_little_room(shown):
@@ -159,11 +164,13 @@ def test_an_id_keeps_its_number_when_there_is_little_room(shown):
 def test_a_click_on_the_mark_changes_the_class_and_undo_brings_it_back(shown, qtbot):
     id, tree = group_at(shown, ON_SMALL[0]).id, shown.docks.features.tree
     tree.scrollToItem(shown.docks.features.item(id))
-    at = tree.visualItemRect(shown.docks.features.item(id))
+    at, mark = tree.visualItemRect(shown.docks.features.item(id)), own_column(shown, 2)
     QTest.mouseClick(
         tree.viewport(),
         LEFT,
-        pos=QPoint(tree.columnViewportPosition(5) + tree.columnWidth(5) // 2, at.center().y()),
+        pos=QPoint(
+            tree.columnViewportPosition(mark) + tree.columnWidth(mark) // 2, at.center().y()
+        ),
     )
     qtbot.waitUntil(lambda: shown.document.feature(id).attributes["local"] is False)
     assert shown.docks.features.item(id).parent().text(0).startswith("Remaining area")
@@ -378,9 +385,10 @@ def test_the_groups_of_the_selection_are_ticked_for_export(shown):
 def test_radii_stand_in_columns_and_as_colours(shown, qtbot):
     small, large = group_at(shown, ON_SMALL[0]), group_at(shown, ON_LARGE)
     rows = [shown.docks.features.item(f.id) for f in (small, large)]
-    assert [row.text(4) for row in rows] == ["4", "7"]
-    assert [row.text(3) for row in rows] == ["", ""]
-    assert shown.docks.features.item(group_at(shown, ON_FILLET).id).text(3) == "3"
+    concave, convex = own_column(shown, 0), own_column(shown, 1)
+    assert [row.text(convex) for row in rows] == ["4", "7"]
+    assert [row.text(concave) for row in rows] == ["", ""]
+    assert shown.docks.features.item(group_at(shown, ON_FILLET).id).text(concave) == "3"
     shown.registry.run("patch.radii")
     try:
         assert shown.viewport.legend.rows[0][1] == "Smallest concave radius"

@@ -85,7 +85,14 @@ def test_a_constant_surface_speed_needs_a_highest_spindle_speed():
 def test_what_is_not_used_leaves_digests_and_json_as_they_were():
     before = DATA.as_dict()
     assert list(before)[-1] == "routed_depth"
-    assert unwritten(DATA) == {"spindle_mode", "highest_spindle", "feed_mode"}
+    assert unwritten(DATA) == {
+        "spindle_mode",
+        "highest_spindle",
+        "feed_mode",
+        "handbook_spindle",
+        "handbook_feed",
+        "bound_by",
+    }
     assert digest(DATA) == "90568a01d1978e9b"
     by_turns = replace(DATA, feed_mode=FeedMode.REVOLUTION)
     assert by_turns.as_dict() == before | {"feed_mode": "revolution"}

@@ -109,7 +109,7 @@ class MessagesDock(QWidget):
         """Copy the selected messages as lines of text, their columns parted by tabs."""
         self._copy(sorted({i.row() for i in self.table.selectedIndexes()}))
 
-    def copy_shown(self) -> None:
+    def copy_all(self) -> None:
         """Copy all messages that the filter lets through."""
         self._copy([r for r in range(len(self.findings)) if not self.table.isRowHidden(r)])
 
@@ -127,7 +127,7 @@ class MessagesDock(QWidget):
         menu.addAction(tr("Copy"), self.copy_selected).setEnabled(
             bool(self.table.selectedIndexes())
         )
-        menu.addAction(tr("Copy all shown"), self.copy_shown)
+        menu.addAction(tr("Copy all shown"), self.copy_all)
         return menu
 
     def _offer(self, at: QPoint) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from PySide6.QtWidgets import QMenu, QWidget
 
@@ -68,6 +68,13 @@ class Views:
             found is None
             or not owners
             or any(v.name == found.family or v in self._foreign(found) for v in owners)
+        )
+
+    def most_offered(self, groups: Sequence[str]) -> int:
+        """Return how many of some groups of settings a part of one family is offered at most."""
+        owners = [[view for view in self if view.owns(group)] for group in groups]
+        return max(
+            (sum(not own or view in own for own in owners) for view in self), default=len(groups)
         )
 
     def _foreign(self, found: Recognition) -> tuple[FamilyView, ...]:

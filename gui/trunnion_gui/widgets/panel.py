@@ -139,7 +139,7 @@ class Panel(Foldout):
             g for step in self.stage.steps for g in self.document.groups.get(step, ()) if g.settings
         ]
         inside = self._settings
-        if len(groups) > _MANY:
+        if self.views.most_offered([g.name for g in groups]) > _MANY:
             whole = self._folded(tr("Settings"))
             self._settings.addWidget(whole)
             inside = whole.content

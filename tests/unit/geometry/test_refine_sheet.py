@@ -109,6 +109,7 @@ def plainly_flipped(points, normals, triangles, face, measure):
 
 
 @pytest.mark.parametrize("measure", [in_mm, wavy])
+@settings(deadline=None)
 @given(seed=st.integers(0, 10_000))
 def test_flips_are_those_of_the_plain_reference(measure, seed) -> None:
     points, normals, triangles, face = lopsided(seed, 5)

@@ -112,9 +112,14 @@ def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = NO_PROGRES
     for turn, power in enumerate(POWERS if len(free) else ()):
         progress.at(turn / len(POWERS), "Laying flow lines")
         matrix = metric.stiffness(weight)[free]
-        wanted = factorized(matrix[:, free].tocsc())(
-            -(matrix[:, np.flatnonzero(fixed)] @ field[fixed])
-        )
+        try:
+            solve = factorized(matrix[:, free].tocsc())
+        except RuntimeError:
+            # Weights that ran away on folded triangles leave nothing to solve: the blend of less power is taken.
+            if not turn:
+                raise
+            break
+        wanted = solve(-(matrix[:, np.flatnonzero(fixed)] @ field[fixed]))
         field[free] += (wanted - field[free]) / (power - 1.0)
         slope = metric.slope(field)
         middle = float(np.median(slope))

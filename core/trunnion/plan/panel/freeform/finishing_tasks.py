@@ -54,7 +54,7 @@ FLOOR_WIDTH = 0.6
 """Distance of a floor's passes over the width of the cutter's flat."""
 FOOT = 2.0
 """degrees: at the foot of sides over level floors, what leans less from level is the floor's; a fillet ends in it."""
-BESIDE_OVERHANG = 2.0
+OVERHANG_DISTANCE = 2.0
 """Times what layers leave: beside walls that lean over it stands as high as the pocket is deep, thicker in corners."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
@@ -128,7 +128,7 @@ def side_tasks(
             hanging = {OVERHANG: 0.0}
         elif pocket.hang > 0.0:
             # What stays at a wall that leans over is nowhere finished: necks keep off more than elsewhere.
-            left *= BESIDE_OVERHANG
+            left *= OVERHANG_DISTANCE
         shallowest = max(settings.steep - LAP, FOOT) if pocket.curved else FOOT
         steps = with_rounder_between(
             cutters,
