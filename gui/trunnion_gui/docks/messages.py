@@ -23,7 +23,7 @@ from trunnion_gui.widgets import table as tables
 from trunnion_gui.widgets.message_filter import GRAVEST_FIRST, MessageFilter
 
 _MOST_NOTICES = 20
-_MOST_WRAPPED = 300
+_MOST_WRAPPED = 100
 """More messages than this have a line each: to lay out so many rows would hold the window."""
 _WHERE, _REMEDY, _CODE, _FIX = 2, 3, 4, 5
 _MOST_SHARES = {_WHERE: 0.16, _REMEDY: 0.3, _CODE: 0.13}
@@ -101,7 +101,7 @@ class MessagesDock(QWidget):
         self.table.setColumnHidden(_FIX, not widths)
         self.table.horizontalHeader().setSectionResizeMode(_FIX, QHeaderView.ResizeMode.Fixed)
         self.table.setColumnWidth(_FIX, max(widths, default=0))
-        self._share_width()
+        self._set_widths()
         self._apply_filter()
         self.counted.emit(len(listed))
 
@@ -145,7 +145,8 @@ class MessagesDock(QWidget):
         """Let messages wrap: each row is as high as its words need in the width there is."""
         wraps = len(self.findings) <= _MOST_WRAPPED
         self.table.setWordWrap(wraps)
-        if wraps:
+        # Laid out when it is shown: behind another dock nobody reads it.
+        if wraps and self.table.isVisible():
             self.table.resizeRowsToContents()
 
     def _button(self, fix: Fix) -> QToolButton:
@@ -166,12 +167,15 @@ class MessagesDock(QWidget):
         self._share_width()
 
     def _share_width(self) -> None:
+        self._set_widths()
+        self._fit_rows()
+
+    def _set_widths(self) -> None:
         """Give the columns beside the message what they need, up to their share."""
         header, width = self.table.horizontalHeader(), self.table.viewport().width()
         for column, most in _MOST_SHARES.items():
             needed = max(self.table.sizeHintForColumn(column), header.sectionSizeHint(column))
             header.resizeSection(column, min(needed, int(most * width)))
-        self._fit_rows()
 
     def _note(self, finding: Finding) -> None:
         self._notices = [finding, *self._notices][:_MOST_NOTICES]
