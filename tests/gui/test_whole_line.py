@@ -80,7 +80,7 @@ def test_the_part_is_programmed_in_at_most_five_interactions(programmed):
 
 
 def frame_s(window) -> float:
-    """Return what drawing one frame of the part with its paths takes this machine now, s: of the window's own thread, the middle of nine."""
+    """Return what drawing one frame of the part with its paths takes this machine, s: of the window's own thread, the middle of nine."""
     taken = []
     for _ in range(9):
         began = time.thread_time()
