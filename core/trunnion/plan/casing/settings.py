@@ -121,6 +121,7 @@ class RegionSettings:
     )
     shop_factor: float = setting(
         1.2,
+        unit="times",
         low=1.0,
         high=10.0,
         label="Factor of the shop",
