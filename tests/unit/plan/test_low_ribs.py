@@ -47,6 +47,33 @@ def test_a_pocket_beside_a_low_rib_reaches_to_its_walls(share, tmp_path):
         assert width == pytest.approx(1.0, abs=tolerance.GOUGE / POCKET[0])
 
 
+@pytest.mark.parametrize("share", [0.9, 1.5])
+def test_a_floor_above_a_low_rib_ends_at_the_rib(share, tmp_path):
+    """The rib between two pockets is lower than the upper floor of one of them: no section over that floor is closed by itself."""
+    step = 2.0 * FILLET
+    plain, stepped = _panel(share * FILLET, tmp_path / "rib.step"), tmp_path / "stepped.step"
+    block = cq.Workplane("XY").box(0.6 * POCKET[0], POCKET[1] + 2.0, step, centered=False)
+    body = cq.importers.importStep(str(plain)).union(
+        block.translate((SIDE - 1.0, SIDE - 1.0, FLOOR))
+    )
+    cq.exporters.export(body, str(stepped))
+    engine = Engine()
+    session = engine.run(engine.open(stepped), "blank")
+    part = engine.context_of(session).part
+    (setup,) = make_setups(session.recognition, session.blank, SetupSettings())
+    space = SetupSpace.of(part, session.recognition, session.blank, setup)
+    pocket = next(
+        f for f in session.recognition.of_kind("pocket") if len(f.with_role("floor")) == 2
+    )
+    upper, lower = space.bands_of(pocket)
+    assert upper.bottom - lower.bottom == pytest.approx(step)
+    area = POCKET[0] * POCKET[1] - (4.0 - math.pi) * CORNER**2
+    assert upper.wanted.area == pytest.approx(area, rel=0.01)
+    assert upper.wanted.minus(lower.wanted).area == pytest.approx(
+        (0.6 * POCKET[0] - 1.0) * POCKET[1], rel=0.05
+    )
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("share", [0.5, 0.9])
 def test_a_panel_with_a_low_rib_passes_its_proof(share, tmp_path):

@@ -293,11 +293,14 @@ class SetupSpace:
         peaks: set[float] = set()
         while len(bands) + 1 < len(breaks):
             high, low = breaks[len(bands) : len(bands) + 2]
+            # Where the lowest rim lies under the band, what it is the rim of closes the section over it.
+            over_rim = min(rim, high) - low <= tolerance.OFF_PLANE
             z = (
                 low + tolerance.OFF_PLANE
                 if low in peaks
-                else _section_height(high, low, min(rim, top), fillets.get(low, 0.0))
+                else _section_height(high, low, high if over_rim else rim, fillets.get(low, 0.0))
             )
+            lips = self._lips(feature, low) if over_rim else EMPTY_REGION
             under = [points[f] for f in points if f <= low + tolerance.SEW]
             sunken = [
                 self.centre(tag)[:2]
@@ -305,7 +308,7 @@ class SetupSpace:
                 if height <= low + tolerance.SEW
                 for tag in island.with_role("top")
             ]
-            band = self._band(feature, high, low, z, under, sunken)
+            band = self._band(feature, high, low, z, under, sunken, lips)
             peak = self._peak_in(band, z, feature, rounding)
             if peak is None:
                 gap = fillets.get(low, 0.0) - (z - low)
@@ -324,6 +327,27 @@ class SetupSpace:
                 if rounded < high - tolerance.SEW:
                     breaks.insert(len(bands) + 1, rounded)
         return tuple(bands)
+
+    def _lips(self, feature: Feature, z: float) -> Region:
+        """Return the level faces that a pocket's walls, or the fillets at their feet, end at under a height, seen from above: the tops of
+        lowered ribs."""
+        graph, own = self.part.graph(), {tag - 1 for tag in feature.tags}
+        walls = [tag - 1 for tag in feature.with_role("wall", "corner", "floor_fillet")]
+        ends = {
+            graph.across(e, w)
+            for w in walls
+            for e in graph.edges_of[w]
+            if graph.convexity[e] == CONVEX
+        }
+        up = self.setup.frame.local_direction(graph.normal)[:, 2] > np.cos(tolerance.ANGLE)
+        heights = self.setup.frame.to_local(graph.centre)[:, 2]
+        return union_all(
+            [
+                self.part.face_outline(self.setup.frame, row + 1)
+                for row in sorted(ends - own)
+                if graph.surface[row] == "plane" and up[row] and heights[row] < z
+            ]
+        )
 
     def _peak_in(self, band: Band, z: float, feature: Feature, rounding: float) -> float | None:
         """Return the height of the highest edge that is in a band below the section at `z` that speaks for it, or None.
@@ -355,8 +379,9 @@ class SetupSpace:
         z: float,
         points: list[Floats],
         sunken: list[Floats],
+        lips: Region = EMPTY_REGION,
     ) -> Band:
-        material = self.material_over(z, self.plan_box(feature))
+        material = self.material_over(z, self.plan_box(feature)).union(lips)
         if feature.kind == "open_pocket":
             wanted = holding(self.silhouette().minus(material), points)
             boundary = (
@@ -598,8 +623,6 @@ def _distinct(heights: Iterable[float]) -> list[float]:
 def _section_height(high: float, low: float, rim: float, fillet: float) -> float:
     """Return the height of the section that speaks for a band: over the fillet at its foot and below the lowest rim."""
     ceiling = min(high, rim)
-    if ceiling - low <= tolerance.OFF_PLANE:
-        return rim - tolerance.OFF_PLANE
     foot = low + fillet
     return (
         0.5 * (foot + ceiling)
