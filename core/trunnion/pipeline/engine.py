@@ -25,6 +25,7 @@ from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
 from trunnion.plan.operation_change import OperationChange, with_change
 from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.report.picture_process import Drawing, here
 from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import load_shop
 from trunnion.verify.settings import ProofSettings
@@ -304,6 +305,7 @@ class Engine:
         *,
         name: str = "",
         date: str = "",
+        drawing: Drawing = here,
         progress: Progress = NO_PROGRESS,
     ) -> tuple[str, ...]:
         """Write everything of a proven session into a folder (NC, CL, XML, tool list, report, project); return the file names."""
@@ -321,6 +323,7 @@ class Engine:
                 name=name,
                 date=date,
                 estimate=estimate(session, context),
+                drawing=drawing,
                 progress=progress.part(0.1, 0.9),
             )
         project = f"{name_of(session, name)}{PROJECT_SUFFIX}"

@@ -11,6 +11,7 @@ from trunnion.model.session import Session
 from trunnion.plan.freeform.estimate.finishing_time import Estimate
 from trunnion.post.release import release
 from trunnion.progress import Progress
+from trunnion.report.picture_process import Drawing, here
 from trunnion.store.atomic import write_text
 from trunnion.store.programs import write_programs as write_texts
 
@@ -31,15 +32,14 @@ def write_documents(
     name: str,
     date: str,
     estimate: Estimate | None = None,
+    drawing: Drawing = here,
     progress: Progress,
 ) -> tuple[str, ...]:
     """Write programs, tool list, XML, pictures and report of a proven session and return the file names.
 
-    The report has the times of areas where an `estimate` of them is given.
+    The report has the times of areas where an `estimate` of them is given; `drawing` draws its pictures.
     """
     from trunnion.report.html import report_html
-    from trunnion.report.palette import load_palette
-    from trunnion.report.pictures import write_pictures
     from trunnion.store.features import write_features
     from trunnion.store.process import write_process
 
@@ -49,6 +49,7 @@ def write_documents(
     files = list(
         write_programs(session, folder, name=stem, date=date, progress=progress.part(0.0, 0.1))
     )
+    drawn = drawing(session, mesh, folder, stem)
     progress.at(0.1, "writing XML and tool list")
     tools = [t.as_dict() for t in session.process.tools()]
     write_text(
@@ -58,7 +59,7 @@ def write_documents(
     write_features(session, folder / f"{stem}.features.xml")
     progress.at(0.2, "writing the process")
     write_process(session, folder / f"{stem}.process.xml")
-    pictures = write_pictures(session, mesh, folder, stem, load_palette(), progress.part(0.3, 0.9))
+    pictures = drawn(progress.part(0.3, 0.9))
     progress.at(0.9, "writing the report")
     page = report_html(session, stem, pictures, folder, date, estimate)
     write_text(folder / f"{stem}.report.html", page)

@@ -56,6 +56,11 @@ class Picture:
     caption: str
 
 
+def load_graphics() -> None:
+    """Load what pictures are drawn with, ahead of the first one."""
+    importlib.import_module("pyvista.plotting.plotter")
+
+
 def write_pictures(
     session: Session,
     mesh: Mesh,
@@ -66,9 +71,7 @@ def write_pictures(
 ) -> tuple[Picture, ...]:
     """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work."""
     made = []
-    progress.aside(
-        lambda _: importlib.import_module("pyvista.plotting.plotter"), "drawing pictures"
-    )
+    progress.aside(lambda _: load_graphics(), "drawing pictures")
     if session.recognition is not None:
         progress.at(0.1, "drawing the features")
         _shoot(_features(session, mesh, palette), folder / f"{name}.features.png", progress)

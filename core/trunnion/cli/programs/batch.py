@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
     add_options,
@@ -18,6 +18,9 @@ from trunnion.cli.common import (
 )
 from trunnion.cli.programs.proof import verdict_code
 from trunnion.findings import TrunnionError
+
+if TYPE_CHECKING:
+    from trunnion.report.picture_process import PictureProcess
 
 
 def add(commands: Any) -> None:
@@ -35,12 +38,15 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Program every part and print a line for each."""
+    from trunnion.report.picture_process import PictureProcess
+
     check_output(options.output)
     results, worst = [], 0
-    for part in options.parts:
-        code, words = _one(options, part)
-        worst = max(worst, code)
-        results.append((part, *words))
+    with PictureProcess() as pictures:
+        for part in options.parts:
+            code, words = _one(options, part, pictures)
+            worst = max(worst, code)
+            results.append((part, *words))
     if options.json:
         show_json(
             {
@@ -55,11 +61,18 @@ def run(options: argparse.Namespace) -> int:
     return worst
 
 
-def _one(options: argparse.Namespace, part: str) -> tuple[int, tuple[str, str, str]]:
+def _one(
+    options: argparse.Namespace, part: str, pictures: PictureProcess
+) -> tuple[int, tuple[str, str, str]]:
     options.part = part
     try:
         engine, session = open_session(options, "repair")
-        engine.write(session, options.output / Path(part).stem, progress=progress_of(options))
+        engine.write(
+            session,
+            options.output / Path(part).stem,
+            drawing=pictures.begin,
+            progress=progress_of(options),
+        )
     except TrunnionError as reason:
         print(f"trunnion: {reason}", file=sys.stderr)
         return 2, ("refused", "", "")

@@ -38,15 +38,22 @@ def add(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the whole line and write its files."""
     from trunnion.pipeline.writing import checked_name
+    from trunnion.report.picture_process import PictureProcess
 
     began = time.perf_counter()
     check_output(options.output)
     if options.name:
         checked_name(options.name)
-    engine, session = open_session(options, "repair")
-    files = engine.write(
-        session, options.output, name=options.name, date=options.date, progress=progress_of(options)
-    )
+    with PictureProcess() as pictures:
+        engine, session = open_session(options, "repair")
+        files = engine.write(
+            session,
+            options.output,
+            name=options.name,
+            date=options.date,
+            drawing=pictures.begin,
+            progress=progress_of(options),
+        )
     seconds = {name: record.seconds for name, record in session.records.items()} | {
         "all": time.perf_counter() - began
     }

@@ -1,0 +1,58 @@
+"""A process that draws: the same pictures as drawn here, cancelled at once, and drawn here where it has ended."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cadquery as cq
+import pytest
+
+from samples import written
+from trunnion.findings import Cancelled
+from trunnion.model.session import Session
+from trunnion.pipeline import Engine
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.report.picture_process import PictureProcess, here
+
+
+@pytest.fixture(scope="module")
+def recognised() -> tuple[Engine, Session]:
+    engine = Engine()
+    session = engine.open(written(cq.Workplane("XY").box(60.0, 40.0, 20.0).val().wrapped))
+    return engine, engine.run(
+        engine.with_choices(session, {"recognize.family": "surface"}), "recognize"
+    )
+
+
+def bytes_of(folder: Path) -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in folder.iterdir()}
+
+
+def test_a_process_draws_the_same_bytes_picture_after_picture(recognised, tmp_path) -> None:
+    engine, session = recognised
+    mesh = engine.mesh(session)
+    folders = [tmp_path / name for name in ("here", "there", "again")]
+    for folder in folders:
+        folder.mkdir()
+    expected = here(session, mesh, folders[0], "block")(NO_PROGRESS)
+    with PictureProcess() as process:
+        made = [process.begin(session, mesh, f, "block")(NO_PROGRESS) for f in folders[1:]]
+    assert made == [expected, expected] and [p.file for p in expected] == ["block.features.png"]
+    first, *others = map(bytes_of, folders)
+    assert first and all(other == first for other in others)
+
+
+def test_pictures_are_drawn_here_where_the_process_has_ended(recognised, tmp_path) -> None:
+    engine, session = recognised
+    with PictureProcess() as process:
+        process._child.kill()
+        made = process.begin(session, engine.mesh(session), tmp_path, "block")(NO_PROGRESS)
+    assert [p.file for p in made] == ["block.features.png"]
+    assert set(bytes_of(tmp_path)) == {"block.features.png"}
+
+
+def test_cancel_does_not_wait_for_the_pictures(recognised, tmp_path) -> None:
+    engine, session = recognised
+    with PictureProcess() as process, pytest.raises(Cancelled):
+        drawn = process.begin(session, engine.mesh(session), tmp_path, "block")
+        drawn(Progress(cancelled=lambda: True))
