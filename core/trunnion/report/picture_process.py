@@ -7,6 +7,7 @@ pictures are drawn by the caller.
 
 from __future__ import annotations
 
+import io
 import os
 import pickle
 import subprocess
@@ -106,7 +107,9 @@ def _wait_for_request() -> None:
 
     Not by a lower priority: where all cores stay busy, pictures that somebody waits for would take minutes.
     """
-    request = threading.Thread(target=sys.stdin.buffer.peek, daemon=True)
+    requests = sys.stdin.buffer
+    assert isinstance(requests, io.BufferedReader)
+    request = threading.Thread(target=requests.peek, daemon=True)
     request.start()
     request.join(HEAD_START_S)
 
