@@ -101,7 +101,10 @@ def _plotter() -> Plotter:
         # Without it pyvista opens a window of an X server on trial, for a warning that a window without a screen does not need.
         os.environ.setdefault("ALLOW_PLOTTING", "true")
     import pyvista
+    from vtkmodules.vtkRenderingCore import vtkMapper
 
+    # One switch for all of VTK, which a window in this process may have set: edges are drawn before the faces that they lie in.
+    vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
     made = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
     made.set_background("white")
     made.render_window.SetMultiSamples(0)

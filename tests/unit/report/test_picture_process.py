@@ -6,6 +6,7 @@ from pathlib import Path
 
 import cadquery as cq
 import pytest
+from vtkmodules.vtkRenderingCore import vtkMapper
 
 from samples import written
 from trunnion.findings import Cancelled
@@ -56,3 +57,18 @@ def test_cancel_does_not_wait_for_the_pictures(recognised, tmp_path) -> None:
     with PictureProcess() as process, pytest.raises(Cancelled):
         drawn = process.begin(session, engine.mesh(session), tmp_path, "block")
         drawn(Progress(cancelled=lambda: True))
+
+
+def test_what_a_window_set_for_all_of_vtk_changes_no_picture(recognised, tmp_path) -> None:
+    engine, session = recognised
+    mesh, made = engine.mesh(session), []
+    for name, switch in (
+        ("window", vtkMapper.SetResolveCoincidentTopologyToPolygonOffset),
+        ("none", vtkMapper.SetResolveCoincidentTopologyToOff),
+    ):
+        switch()
+        folder = tmp_path / name
+        folder.mkdir()
+        here(session, mesh, folder, "block")(NO_PROGRESS)
+        made.append(bytes_of(folder))
+    assert made[0] == made[1]
