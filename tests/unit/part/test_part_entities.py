@@ -169,7 +169,7 @@ def test_a_number_that_the_specification_lacks_is_unknown():
 @pytest.mark.parametrize(
     ("name", "type", "count"),
     [
-        ("public/impeller/impeller.igs", 144, 277),
+        pytest.param("public/impeller/impeller.igs", 144, 277, marks=pytest.mark.long),
         ("public/surface/fillet_patch_buc50025.igs", 128, 7),
         ("public/surface/propeller_blade_upper.iges", 144, 1),
         ("nasty/not_sewn.igs", 144, 16),

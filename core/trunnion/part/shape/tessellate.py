@@ -33,8 +33,9 @@ def tessellated(
     can't do is missing from the mesh; `Mesh.face` has those that are there.
     """
     BRepTools.Clean_s(shape)
+    # Faces are meshed on both cores; each face alone, so the triangles are the same as on one.
     progress.doing("triangles of the faces")
-    BRepMesh_IncrementalMesh(shape, chord, False, angle, False)
+    BRepMesh_IncrementalMesh(shape, chord, False, angle, isInParallel=True)
     points, triangles, owners, count = [], [], [], 0
     for tag in sorted(faces):
         progress.check()
