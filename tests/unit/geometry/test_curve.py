@@ -206,7 +206,10 @@ def test_compiled_loops_give_what_the_plain_ones_give(seed):
     same = compiled_nearest == nearest
     assert same[:500].all()
     off = points[away > 1e-9]
-    assert (plain.winding_numbers(off, *rows) == compiled.winding_numbers(off, *rows)).all()
+    around = compiled.winding_numbers(off, *rows)
+    assert (plain.winding_numbers(off, *rows) == around).all()
+    alone = [compiled.winding_numbers(off[k : k + 1], *rows)[0] for k in range(len(off))]
+    assert (around == alone).all()
     assert compiled.nearest_segment.py_func(points[:20], *rows)[0] == approx(away[:20], abs=1e-12)
 
 

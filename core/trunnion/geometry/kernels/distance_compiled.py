@@ -70,17 +70,88 @@ def nearest_segment(
     return best, row
 
 
+FEW_POINTS = 32
+"""Points for which gathering the segments by height would cost more than it spares."""
+MOST_STRIPS = 1024
+"""Strips of height that segments are gathered in: beyond it, most hold the same few segments."""
+FLAT = 1e-6
+"""rad: half the turn of an arc below which rounding hides where its circle meets its chord; the whole circle counts."""
+ROUNDED = 1e-12
+"""Of a circle's numbers: more than rounding can bring a point into it that lies over or under it."""
+
+
+@njit(cache=True, nogil=True)
+def _heights(
+    start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
+) -> tuple[Floats, Floats]:
+    """Return between which heights y (n,) a segment can count for a winding number: beyond them are neither its chord nor the cap between
+    chord and arc, which rises over the chord by r (1 - cos(sweep / 2)) up to half a turn."""
+    low, high = np.empty(len(start)), np.empty(len(start))
+    for i in range(len(start)):
+        low[i], high[i] = min(start[i, 1], end[i, 1]), max(start[i, 1], end[i, 1])
+        if sweep[i] != 0.0:
+            half, slack = 0.5 * abs(sweep[i]), ROUNDED * (abs(centre[i, 1]) + radius[i])
+            if FLAT < half < 0.5 * math.pi:
+                rise = radius[i] * (1.0 - math.cos(half)) + slack / math.sin(half)
+                low[i], high[i] = low[i] - rise, high[i] + rise
+            else:
+                low[i] = centre[i, 1] - radius[i] - slack
+                high[i] = centre[i, 1] + radius[i] + slack
+    return low, high
+
+
+@njit(cache=True, nogil=True)
+def _in_strips(
+    low: Floats, high: Floats, bottom: float, width: float, count: int
+) -> tuple[Ints, Ints]:
+    """Return the segments of each of some strips of height, one after the other, and where each strip's begin (count + 1,)."""
+    begin = np.zeros(count + 1, dtype=np.int64)
+    for i in range(len(low)):
+        for s in range(
+            _strip(low[i], bottom, width, count), _strip(high[i], bottom, width, count) + 1
+        ):
+            begin[s + 1] += 1
+    begin = np.cumsum(begin)
+    rows, filled = np.empty(begin[count], dtype=np.int64), begin.copy()
+    for i in range(len(low)):
+        for s in range(
+            _strip(low[i], bottom, width, count), _strip(high[i], bottom, width, count) + 1
+        ):
+            rows[filled[s]] = i
+            filled[s] += 1
+    return rows, begin
+
+
+@njit(cache=True, nogil=True)
+def _strip(y: float, bottom: float, width: float, count: int) -> int:
+    """Return the strip that a height is in; monotone in y, so that a point is in one of its segment's strips whatever is rounded."""
+    return min(max(int((y - bottom) / width), 0), count - 1)
+
+
 @njit(int64[::1](*_SIGNATURE), cache=True, nogil=True)
 def winding_numbers(
     points: Floats, start: Floats, end: Floats, centre: Floats, radius: Floats, sweep: Floats
 ) -> Ints:
     """Return the winding number (k,) of the loops made of all the segments about each point (k, 2),
-    anticlockwise positive."""
+    anticlockwise positive.
+
+    Of many points each is held against the segments at its height alone; the others count nothing.
+    """
     total = np.zeros(len(points), dtype=np.int64)
+    if len(start) == 0:
+        return total
+    low, high = _heights(start, end, centre, radius, sweep)
+    bottom, top = low.min(), high.max()
+    strips = 1 if len(points) < FEW_POINTS or not top > bottom else min(len(start), MOST_STRIPS)
+    width = (top - bottom) / strips if strips > 1 else 1.0
+    rows, begin = _in_strips(low, high, bottom, width, strips)
     for k in range(len(points)):
         px, py = points[k]
-        count = 0
-        for i in range(len(start)):
+        if not bottom <= py <= top:
+            continue
+        strip, count = _strip(py, bottom, width, strips), 0
+        for n in range(begin[strip], begin[strip + 1]):
+            i = rows[n]
             ax, ay, bx, by = start[i, 0], start[i, 1], end[i, 0], end[i, 1]
             side = (bx - ax) * (py - ay) - (px - ax) * (by - ay)
             # Crossings of a ray towards +x with the chord, upwards +1, downwards -1.
