@@ -19,6 +19,7 @@ DONE, PROBLEMS, BAD, CANCELLED = 0, 1, 2, 130
 GENERAL = (
     "info",
     "planning.recognize",
+    "planning.edit",
     "planning.size",
     "planning.blank",
     "planning.route",

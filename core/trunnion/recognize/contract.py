@@ -149,6 +149,23 @@ class Measuring(Protocol):
 
 
 @runtime_checkable
+class Describing(Protocol):
+    """A family that can say what chosen faces are in a feature: a person may give its features of the kinds `describable` other faces."""
+
+    settings: type
+    describable: tuple[str, ...]
+
+    def described(
+        self, feature: Feature, found: Recognition, graph: FaceGraph, settings: Any
+    ) -> Feature:
+        """Return a feature, its kind and faces given, with the roles, sizes and automatic attributes that follow from these faces.
+
+        `found` holds the other features. Raises `BadInput` where the faces can't be a feature of the kind.
+        """
+        ...
+
+
+@runtime_checkable
 class SizeMeasuring(Protocol):
     """A family that measures more of a part than its features' own sizes: what takes the part's exact surfaces, or two features."""
 
@@ -235,6 +252,12 @@ def exclusive_kinds(family: str) -> tuple[str, ...]:
     """Return the kinds of features of a family that share out faces; none where the family has none or is not registered."""
     found = _registered(family)
     return found.exclusive if isinstance(found, Sharing) else ()
+
+
+def describable_kinds(family: str) -> tuple[str, ...]:
+    """Return the kinds of features of a family that a person may give other faces; none where the family can't describe them."""
+    found = _registered(family)
+    return found.describable if isinstance(found, Describing) else ()
 
 
 def smallest_sizes(family: str) -> tuple[Smallest, ...]:

@@ -96,6 +96,8 @@ class FeatureDock(QWidget):
     def menu(self, feature: Feature) -> QMenu:
         """Return what may be done with a feature."""
         menu = QMenu(self)
+        selected_ids = [id for id, row in self._items.items() if row.isSelected()]
+        self._views.face_edits.add_feature_entries(menu, feature, selected_ids)
         self._views.of(feature).add_feature_entries(menu, feature)
         change = QMenu(tr("Change kind"), menu)
         change.setIcon(icons.icon("kind"))

@@ -10,6 +10,7 @@ from trunnion import registry
 from trunnion.findings import BadCall
 from trunnion.model.feature import Feature, Recognition
 from trunnion_gui.document import Document
+from trunnion_gui.face_edits import FaceEdits
 from trunnion_gui.families.contract import FamilyView, FeatureClass
 
 
@@ -19,6 +20,7 @@ class Views:
     def __init__(self, document: Document) -> None:
         """Make the registered views; raise `BadCall` when two present the same kind of feature."""
         self._plain = FamilyView(document)
+        self.face_edits = FaceEdits(document)
         self._by_name = {
             name: _view(name, document)
             for name in sorted({*registry.names("families"), *registry.names("views")})
@@ -86,6 +88,7 @@ class Views:
     def face_menu(self, parent: QWidget, tags: tuple[int, ...]) -> QMenu:
         """Return what may be done with some faces."""
         menu = QMenu(parent)
+        self.face_edits.add_face_entries(menu, tags)
         for view in self:
             view.add_face_entries(menu, tags)
         return menu

@@ -35,6 +35,8 @@ def with_manual_features(before: Recognition | None, found: Recognition) -> Reco
     taken = [set(f.tags) for f in by_hand if f.kind not in sharing] + [
         set(tags) for tags in before.removed
     ]
+    # A feature that a person parted has most of its faces in several: none of them alone claims it.
+    taken.append({tag for tags in taken for tag in tags})
     others = [
         f
         for f in _renamed(_shared_out(found.features, by_hand, sharing), by_hand, retired, sharing)

@@ -14,6 +14,7 @@ from trunnion.recognize.contract import Slicer, Smallest, Suitability
 from trunnion.recognize.extent import box
 from trunnion.recognize.holes.recognize import find_holes
 from trunnion.recognize.panel.classes import FaceClass, classify
+from trunnion.recognize.panel.describe import DESCRIBABLE, described
 from trunnion.recognize.panel.details import make_details
 from trunnion.recognize.panel.features import (
     FeatureNumbers,
@@ -40,6 +41,7 @@ class PanelFamily:
     noun = "a panel"
     kinds = KINDS
     settings = PanelSettings
+    describable = DESCRIBABLE
     smallest: tuple[Smallest, ...] = (
         Smallest(
             name="smallest_corner_radius",
@@ -58,6 +60,12 @@ class PanelFamily:
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return the share of the part's area that a panel's faces may have."""
         return suitability(graph)
+
+    def described(
+        self, feature: Feature, found: Recognition, graph: FaceGraph, settings: PanelSettings
+    ) -> Feature:
+        """Return a feature with the roles and sizes of its faces. Raises `BadInput` where these can't be one of its kind."""
+        return described(feature, found, graph, settings)
 
     def recognize(
         self,

@@ -87,10 +87,10 @@ def make_features(
         findings.extend(found)
     islands = [(i, id) for id, c in named for i in c.pocket.islands]
     for island, inside in in_rows(islands, lambda pair: middle(pair[0].faces)):
-        features.append(_island(view, numbers.next("island"), island, inside))
+        features.append(make_island(view, numbers.next("island"), island, inside))
     pockets = [c.pocket for _, c in named]
     for top in in_rows(shown.ribs, lambda r: middle((r,))):
-        features.append(_rib(view, numbers.next("rib"), top, pockets))
+        features.append(make_rib(view, numbers.next("rib"), top, pockets))
     return SideFeatures(features=tuple(features), findings=tuple(findings))
 
 
@@ -175,18 +175,25 @@ def _pocket(
             )
             for remark in shape_remarks(view, confirmed)
         ]
-    roles = (
-        *_roles("floor", pocket.floors),
-        *((_side_role(view, w), w) for w in pocket.walls),
-        *_roles("corner", pocket.corners),
-        *_roles("floor_fillet", pocket.fillets),
-    )
     return Feature(
-        id=id, kind=kind, faces=_faces(roles), sizes=sizes, attributes=attributes
+        id=id, kind=kind, faces=pocket_faces(view, pocket), sizes=sizes, attributes=attributes
     ), tuple(findings)
 
 
-def _island(view: PanelSide, id: str, island: Island, inside: str) -> Feature:
+def pocket_faces(view: PanelSide, pocket: Pocket) -> tuple[FaceRole, ...]:
+    """Return the faces of a pocket with their roles."""
+    return _faces(
+        (
+            *_roles("floor", pocket.floors),
+            *((_side_role(view, w), w) for w in pocket.walls),
+            *_roles("corner", pocket.corners),
+            *_roles("floor_fillet", pocket.fillets),
+        )
+    )
+
+
+def make_island(view: PanelSide, id: str, island: Island, inside: str) -> Feature:
+    """Return an island that stands in the pocket named `inside`."""
     roles = (
         *_roles("top", island.tops),
         *((_side_role(view, w), w) for w in island.walls),
@@ -205,7 +212,8 @@ def _island(view: PanelSide, id: str, island: Island, inside: str) -> Feature:
     )
 
 
-def _rib(view: PanelSide, id: str, top: int, pockets: Sequence[Pocket]) -> Feature:
+def make_rib(view: PanelSide, id: str, top: int, pockets: Sequence[Pocket]) -> Feature:
+    """Return the rib with a top, between pockets."""
     adjacent = {
         view.graph.across(e, top)
         for e in view.graph.edges_of[top]
