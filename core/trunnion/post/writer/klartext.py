@@ -169,9 +169,10 @@ def klartext_stamp(words: KlartextWords, program: str, header: Header) -> tuple[
 
 
 class KlartextWriter(ProgramWriter):
-    """Writes one setup's program for three axes."""
+    """Writes one setup's program for three axes. `speed` is that of the spindle, as it was said."""
 
     words: KlartextWords
+    speed: str = ""
     state_class: ClassVar[type[KlartextState]] = KlartextState
 
     def written_state(self) -> WrittenState:
@@ -216,9 +217,16 @@ class KlartextWriter(ProgramWriter):
         """Yield the blocks that turn the spindle; a tool change has said its speed."""
         if section.surface_speed > 0.0:
             yield from super().spindle(section, changed)
-        if not changed:
-            yield self.words.speed.format(spindle=trimmed(section.spindle, 0))
+        speed = trimmed(section.spindle, 0)
+        if not changed and speed != self.speed:
+            yield from self.before_call()
+            yield self.words.speed.format(spindle=speed)
+        self.speed = speed
         yield self.words.spindle
+
+    def before_call(self) -> Iterator[str]:
+        """Yield what must be said before `TOOL CALL`."""
+        yield from ()
 
     def cycles(self) -> CycleCallWriter:
         """Return what writes the drilling cycles of a section."""
@@ -255,12 +263,11 @@ class KlartextTipWriter(KlartextWriter, TipWriter):
         yield from super().opened(header)
         yield from map(self.numbered, [self.words.no_tip_control, self.words.no_plane])
 
-    def spindle(self, section: ProgramSection, changed: bool) -> Iterator[str]:
-        """Yield the blocks that turn the spindle; tip control must end before `TOOL CALL`, and is said anew where it goes on."""
-        if self.follows and not changed:
+    def before_call(self) -> Iterator[str]:
+        """Yield the end of tip control; where that goes on it is said anew."""
+        if self.follows:
             yield self.words.no_tip_control
-            self.follows = False
-        yield from super().spindle(section, changed)
+        self.follows = False
 
     def joined_length(self, tool: object) -> str:
         """Return nothing: the tool's length counts from its call on."""

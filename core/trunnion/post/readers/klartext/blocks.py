@@ -13,6 +13,7 @@ NUMBER = r"[-+]?(?:[0-9]{1,9}\.?[0-9]{0,12}|\.[0-9]{1,12})"
 _BLOCK_NUMBER = re.compile(r"[0-9]{1,8}")
 _WORD = re.compile(rf"(I?P?[ABCXYZ]|T[XYZ]|F|M)({NUMBER})")
 _PARAMETER = re.compile(rf"Q([0-9]{{1,4}})=({NUMBER})")
+_INCREMENTAL = re.compile(rf"I[XYZABC]{NUMBER}")
 _TITLE = re.compile(r"[A-Z.&/-]+")
 _TURNS = {"DR+": 1, "DR-": -1}
 
@@ -118,6 +119,8 @@ def _take(
         found.feed = value
     elif letter in found.numbers or letter == "F":
         raise BadInput(f"line {line}: two {letter} words; keep one")
+    elif letter not in known and _INCREMENTAL.fullmatch(word):
+        raise BadInput(f"line {line}: {why_not(word, refused)}")
     elif letter not in known:
         raise BadInput(
             f"line {line}: {shown(word)} is not understood in this block; known are {', '.join(known)}"
@@ -167,6 +170,8 @@ def why_not(word: str, refused: Mapping[str, str]) -> str:
     for key in (word, letters.group(0) if letters else ""):
         if key in refused:
             return f"{shown(word)}: {refused[key].format(word=shown(word))}"
-    if re.fullmatch(rf"I[XYZABC]{NUMBER}", word):
+    if "Q" in refused and re.fullmatch(r"[A-Z]+[-+]?Q[LRS]?[0-9]+", word):
+        return f"{shown(word)}: {refused['Q']}"
+    if _INCREMENTAL.fullmatch(word):
         return f"{shown(word)}: incremental moves are not understood; write absolute positions"
     return f"{shown(word)} is not understood; remove it or write what it does by other words"

@@ -57,7 +57,7 @@ class KlartextMover:
         if given.turns:
             raise BadInput(f"line {line}: DR is of arcs; remove it")
         if "M91" in given.functions:
-            self.to_top(line, given)
+            self.to_top(line, given, is_vector)
             return
         if any(letter in given.numbers for letter in ROTARY):
             self.turn_axes(line, given)
@@ -154,10 +154,10 @@ class KlartextMover:
             )
         return None if z is None else (*state.over, z, *direction)
 
-    def to_top(self, line: int, given: PathWords) -> None:
+    def to_top(self, line: int, given: PathWords, is_vector: bool) -> None:
         """Go straight up to the top of the machine: `L Z0 FMAX M91` alone, in no tilted plane and without tip control."""
         tilted = self.tilted
-        if given.numbers != {"Z": 0.0} or not given.rapid:
+        if given.numbers != {"Z": 0.0} or not given.rapid or is_vector:
             raise BadInput(
                 f"line {line}: of M91 only {self.words.top}, straight up to the top of the machine, is understood"
             )
