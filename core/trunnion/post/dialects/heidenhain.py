@@ -57,8 +57,8 @@ class HeidenhainDialect:
         from trunnion.post.readers.klartext.interpreter import read_klartext
 
         self._check_one(setups)
-        place = work_positions.get(setups[0].name)
-        return (read_klartext(text, tools, setups[0], place, self.words),)
+        work_position = work_positions.get(setups[0].name)
+        return (read_klartext(text, tools, setups[0], work_position, self.words),)
 
     def _check_one(self, given: Sequence[Program] | Sequence[Setup]) -> None:
         if len(given) != 1:

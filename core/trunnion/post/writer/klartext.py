@@ -35,13 +35,13 @@ MOST_OFF = 2.0
 """Ticks: a helix that ends farther beside is followed by a line to its end."""
 
 
-class SignedScale(TickScale):
+class KlartextScale(TickScale):
     """Lengths and angles with their sign, plus too."""
 
     def text(self, ticks: int) -> str:
         """Return the number that some ticks stand for.
 
-        >>> SignedScale(unit=1.0, decimals=4, feed_decimals=1, point=".0").text(125000)
+        >>> KlartextScale(unit=1.0, decimals=4, feed_decimals=1, point=".0").text(125000)
         '+12.5'
         """
         written = super().text(ticks)
@@ -53,14 +53,14 @@ class SignedScale(TickScale):
         return shortened(feed / unit, self.feed_decimals)
 
 
-class KlartextState(WrittenState):
+class KlartextBlockState(WrittenState):
     """The modal state of a Klartext.
 
     `off` is by how much (x, y), in ticks, the tool is beside where it was to be: an angle of a helix leads it from where it is, with the
     radius that it has there. None where it is on the last decimal: it is brought back there by the next block that says where it ends.
     """
 
-    scale_class = SignedScale
+    scale_class = KlartextScale
     off: tuple[float, float] | None = None
 
     def rapid(self, words: Iterable[str]) -> str:
@@ -134,7 +134,7 @@ class KlartextState(WrittenState):
         return [] if text == before else ["F" + text]
 
 
-class KlartextTipState(KlartextState, TipState):
+class KlartextTipState(KlartextBlockState, TipState):
     """The same while the control follows the tip."""
 
 
@@ -173,7 +173,7 @@ class KlartextWriter(ProgramWriter):
 
     words: KlartextWords
     speed: str = ""
-    state_class: ClassVar[type[KlartextState]] = KlartextState
+    state_class: ClassVar[type[KlartextBlockState]] = KlartextBlockState
 
     def written_state(self) -> WrittenState:
         """Return the modal state at the beginning of the text."""
@@ -235,7 +235,7 @@ class KlartextWriter(ProgramWriter):
     def arc(self, path: WrittenPath, row: int, last: int) -> Iterator[str]:
         """Yield the blocks of an arc; of a helix and of a whole circle by the angle, which is never in doubt."""
         modal = self.modal
-        assert isinstance(modal, KlartextState)
+        assert isinstance(modal, KlartextBlockState)
         for first in range(row, last + 1, self.words.turns_a_block):
             end = min(first + self.words.turns_a_block - 1, last)
             block = block_of(path, end)

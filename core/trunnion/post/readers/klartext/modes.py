@@ -185,12 +185,12 @@ class KlartextModes:
 
     def function(self, block: KlartextBlock) -> None:
         """Follow the tip from here on, or no longer (`FUNCTION TCPM`, `FUNCTION RESET TCPM`)."""
-        line, said = block.line, " ".join(block.words)
+        line, words = block.line, " ".join(block.words)
         tilted = self.tilted(line, "FUNCTION TCPM")
         self.state.pole = self.state.over = None
-        if said == self.words.no_tip_control:
+        if words == self.words.no_tip_control:
             tilted.follows = False
-        elif said.removesuffix(" REFPNT TIP-TIP") == self.words.tip_control[0]:
+        elif words.removesuffix(" REFPNT TIP-TIP") == self.words.tip_control[0]:
             tilted.follow(line, "FUNCTION TCPM", self.words.no_plane)
         else:
             raise BadInput(
