@@ -22,7 +22,7 @@ from trunnion.shop import load_shop
 from trunnion.shop.kinematics import axes_of, rotary_solutions
 
 MACHINES = [m for m in load_shop().machines.values() if m.rotary]
-DIALECTS = ["sinumerik", "fanuc"]
+DIALECTS = ["sinumerik", "fanuc", "heidenhain"]
 TIP, AXIS = 1e-3, math.radians(1e-3)
 """mm and rad that a pose may be off, beside what decimals round: 1 um and a thousandth of a degree."""
 ROUNDED = 0.5e-4 * math.sqrt(3.0)
@@ -240,7 +240,7 @@ def test_a_tool_that_goes_on_in_its_direction_stays_at_the_work(name):
     second = path_of(((5.0, 0.0, 3.0), lean), ((9.0, 1.0, 3.0), lean))
     turning = path_of(((9.0, 1.0, 3.0), lean), ((9.0, 9.0, 3.0), (0.0, 0.0, 1.0)))
     text, read = posted(name, place, first, second, turning)
-    top = "SUPA G0 Z0 D0" if name == "sinumerik" else "G53 G0 Z0."
+    top = registry.get("dialects", name)().words.top
     # At the tool change, before the tool is followed out of a tilted plane, at the end.
     assert text.count(top) == 3
     # Each begins where the one before has left the tool; the last is lifted at the end.

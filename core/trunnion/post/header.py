@@ -5,6 +5,7 @@ The first lines are the stamp: always the same number, so that a text keeps its 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,6 +23,7 @@ from trunnion.units import MM_PER_INCH, trimmed
 REJECTED = "REJECTED"
 STAMP_LINES = 5
 _MOST_REASONS = 6
+_UNITS = re.compile(r"[\d\W]*(?:PPRINT/)?UNITS (MM|INCH)\W*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,7 +31,8 @@ class Header:
     """What a program says of itself.
 
     `name` is the NAME of its files, `part_digest` of the part's file, `plan_digest` of blank, process tree and toolpaths; `date` is given
-    by the caller, never the clock's. Without a `verdict` the text is stamped as rejected: nothing has proven it.
+    by the caller, never the clock's. Without a `verdict` the text is stamped as rejected: nothing has proven it. `units` are those of the
+    text's lengths: a stamp may have to name them.
     """
 
     name: str
@@ -39,6 +42,7 @@ class Header:
     material: str = ""
     date: str = ""
     verdict: Verdict | None = None
+    units: str = "mm"
 
     @classmethod
     def of(cls, session: Session, *, name: str = "", date: str = "") -> Header:
@@ -142,6 +146,16 @@ def work_position_lines(setup: Setup, work_position: WorkPosition, units: str) -
     if any(a.carries == "work" for a in rotary):
         lines.append("THE PLACE ON THE TABLE IS IN THE WORDS: THE WORK MUST STAND THERE")
     return tuple(lines)
+
+
+def units_of(lines: Sequence[str]) -> str:
+    """Return the units that a text's header says its lengths are in.
+
+    >>> units_of(["0 BEGIN PGM S1 INCH", "9 ; UNITS INCH"]), units_of(["(UNITS MM)"])
+    ('inch', 'mm')
+    """
+    found = next((m for line in lines if (m := _UNITS.fullmatch(line))), None)
+    return found.group(1).lower() if found else "mm"
 
 
 def plan_digest(session: Session) -> str:

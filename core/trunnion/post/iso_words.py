@@ -32,7 +32,7 @@ _PLACEHOLDERS = {
     "cycle_end": (),
 }
 """What may stand in braces in the lines of a word."""
-_CALL = (
+CALL = (
     "end",
     "plane",
     "bottom",
@@ -45,7 +45,7 @@ _CALL = (
     "spindle",
 )
 """What may stand in braces in a cycle call."""
-PLANE_ORDERS = ("XYZ", "ZXZ")
+PLANE_ORDERS = ("XYZ", "ZXZ", "ZYX")
 """About which axes a tilted plane is turned, one after the other, each as the ones before have left it."""
 _KEYS = {"units": ("mm", "inch"), "coolant": ("off",), "letters": ("radius",)}
 """Entries that a table must have."""
@@ -139,7 +139,7 @@ def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
             _check_keys(name, word, value)
         if word in _PLACEHOLDERS:
             lines = (value,) if isinstance(value, str) else value
-            _check_placeholders(name, word, lines, _PLACEHOLDERS[word])
+            check_placeholders(name, word, lines, _PLACEHOLDERS[word])
     for role, letter in words.letters.items():
         if role not in ROLES or not (len(letter) == 1 or letter.endswith("=")):
             raise BadInput(
@@ -147,7 +147,7 @@ def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
                 f"got {role} = {letter!r}"
             )
     _check_cycles(name, words)
-    _check_directions(name, words)
+    check_directions(name, words)
     return words
 
 
@@ -176,7 +176,7 @@ def _check_cycles(name: str, words: IsoWords) -> None:
     for kind in (*words.cycles, *words.cycle_calls):
         if kind not in list(CycleKind):
             raise BadInput(f"dialect {name}: cycles knows {', '.join(CycleKind)}; got {kind}")
-    _check_placeholders(name, "cycle_calls", tuple(words.cycle_calls.values()), _CALL)
+    check_placeholders(name, "cycle_calls", tuple(words.cycle_calls.values()), CALL)
     for kind in words.cycles:
         needed = ["retract", *(["peck"] * (kind in PECKING)), *(["dwell"] * (kind in WAITING))]
         missing = [role for role in needed if role not in words.letters]
@@ -185,7 +185,7 @@ def _check_cycles(name: str, words: IsoWords) -> None:
             raise BadInput(f"dialect {name}: {what} for the cycle {kind}")
 
 
-def _check_directions(name: str, words: IsoWords) -> None:
+def check_directions(name: str, words: IsoWords) -> None:
     """Raise `BadInput` for words of five axes that leave out what the others need."""
     if not words.directions:
         return
@@ -200,7 +200,7 @@ def _check_directions(name: str, words: IsoWords) -> None:
         raise BadInput(f"dialect {name}: {what}")
 
 
-def _check_placeholders(
+def check_placeholders(
     name: str, word: str, lines: tuple[str, ...], known: tuple[str, ...]
 ) -> None:
     try:

@@ -13,9 +13,9 @@ from pathlib import Path
 from trunnion import registry
 from trunnion.findings import BadCall, Refused, Severity
 from trunnion.model.session import PostedFile, Session
-from trunnion.post.header import REJECTED, STAMP_LINES, Header, plan_digest
+from trunnion.post.header import REJECTED, STAMP_LINES, Header, plan_digest, units_of
 
-_RELEASED_LINE = re.compile(r"\W*(PPRINT/)?RELEASED\W*")
+_RELEASED_LINE = re.compile(r"(\d+ )?\W*(PPRINT/)?RELEASED\W*")
 
 
 def release(session: Session, *, name: str = "", date: str = "") -> tuple[PostedFile, ...]:
@@ -47,6 +47,7 @@ def _stamped(posted: PostedFile, header: Header, plan: str) -> PostedFile:
         raise Refused(
             f"{posted.suffix}: not the text of this session's plan; it leaves only after post and proof of the plan as it is now"
         )
+    header = replace(header, units=units_of(lines))
     stamp = dialect.stamp(f"{header.name}.{posted.setup}" if posted.setup else header.name, header)
     before = f"{posted.setup}.{REJECTED}." if header.rejected else f"{posted.setup}."
     suffix = before + dialect.suffix if posted.setup else dialect.suffix

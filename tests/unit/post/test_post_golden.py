@@ -32,7 +32,7 @@ HEADER = Header(
     material="al-7075",
     date="2026-01-02",
 )
-DIALECTS = {".nc": "linuxcnc", ".cl": "apt", ".MPF": "sinumerik"}
+DIALECTS = {".nc": "linuxcnc", ".cl": "apt", ".MPF": "sinumerik", ".h": "heidenhain"}
 """By the ending of a text; cases whose name has another dialect's in it are of that."""
 TABLES = {"S1": standing(TABLE)}
 """Where work stands in cases of five axes."""

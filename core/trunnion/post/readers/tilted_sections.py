@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import AnyTool
@@ -102,6 +103,33 @@ class TiltedSections(Sections):
         self.level = bool((matrix == np.eye(3)).all())
         if known:
             self.axis = matrix[:, 2]
+
+    def follow(self, line: int, code: str, no_plane: str) -> None:
+        """Follow the tip from here on: points are tips in the work, directions are vectors; raise `BadInput` in a tilted plane."""
+        if not self.level:
+            raise BadInput(
+                f"line {line}: {code} in a tilted plane is not understood; put {no_plane} first"
+            )
+        axis = self.axis
+        self.tilt(np.eye(3), False)
+        self.axis, self.follows = axis, True
+
+    def turn_to(self, line: int, code: str, matrix: Floats, top: str) -> None:
+        """Tilt the plane of the program to axes (3, 3), columns in the setup frame, and turn the tool along its z: at the top of the
+        machine, unless it points there; raise `BadInput` elsewhere."""
+        axis = self.axis if self.known else None
+        keeps = axis is not None and np.linalg.norm(matrix[:, 2] - axis) <= SAME_DIRECTION
+        if self.at is not None and not keeps:
+            raise BadInput(
+                f"line {line}: {code} turns the tool while it is at the work; put {top} first"
+            )
+        self.tilt(matrix, True)
+
+    def level_out(self) -> None:
+        """Take the plane of the setup again; the tool points where it did."""
+        axis, level = self.axis, self.level
+        self.tilt(np.eye(3), self.known and level)
+        self.axis = axis
 
     def turned_away(self, angle: Floats | None, work_position: WorkPosition) -> None:
         """Let the rotary axes stand at angles (a,) rad, None while one is not known: with all at 0 the plane is the setup's own."""

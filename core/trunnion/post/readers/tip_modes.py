@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.model.setup import Setup
 from trunnion.post.readers.directions import Directions
 from trunnion.post.readers.sections import Sections, UprightPoses
-from trunnion.post.readers.tilted_sections import SAME_DIRECTION, TiltedSections, TipPoses
+from trunnion.post.readers.tilted_sections import TiltedSections, TipPoses
 from trunnion.post.readers.tip_moves import TipMover
 from trunnion.post.readers.word_address.blocks import Block
 from trunnion.post.readers.word_address.interpreter import Control
@@ -22,14 +20,7 @@ class TipModes(Modes):
 
     def follow(self, block: Block, code: str) -> None:
         """Follow the tip from here on: points are tips in the work, directions are vectors."""
-        sections = self.tilted(block, code)
-        if not sections.level:
-            raise BadInput(
-                f"line {block.line}: {code} in a tilted plane is not understood; put {self.language.words.no_plane} first"
-            )
-        axis = sections.axis
-        sections.tilt(np.eye(3), False)
-        sections.axis, sections.follows = axis, True
+        self.tilted(block, code).follow(block.line, code, self.language.words.no_plane)
 
     def leave_tip(self, block: Block) -> None:
         """Follow the tip no longer; where the rotary axes stand is not in the text."""
@@ -40,21 +31,12 @@ class TipModes(Modes):
     def tilt(self, block: Block, code: str, matrix: Floats) -> None:
         """Tilt the plane of the program to axes (3, 3), columns in the setup frame, and turn the tool along its z: at the top of the
         machine, unless it points there."""
-        sections = self.tilted(block, code)
-        axis = sections.axis if sections.known else None
-        keeps = axis is not None and np.linalg.norm(matrix[:, 2] - axis) <= SAME_DIRECTION
-        if sections.at is not None and not keeps:
-            raise BadInput(
-                f"line {block.line}: {code} turns the tool while it is at the work; put {self.language.words.top} first"
-            )
-        sections.tilt(matrix, True)
+        sections, top = self.tilted(block, code), self.language.words.top
+        sections.turn_to(block.line, code, matrix, top)
 
     def level(self, block: Block, code: str) -> None:
         """Take the plane of the setup again; the tool points where it did."""
-        sections = self.tilted(block, code)
-        axis, level = sections.axis, sections.level
-        sections.tilt(np.eye(3), sections.known and level)
-        sections.axis = axis
+        self.tilted(block, code).level_out()
 
     def tilted(self, block: Block, code: str) -> TiltedSections:
         """Return the sections of a machine with rotary axes; raise `BadInput` for a machine without."""

@@ -17,9 +17,9 @@ LONGEST_NAME = 32
 """Characters of a tool's name that tool tables hold."""
 
 
-def tool_change(modal: WrittenState, tool: AnyTool) -> Iterator[str]:
-    """Yield the lines that bring a tool into the spindle; where it is is not known after them."""
-    filled = {"tool": tool.number, "name": plain(tool.name, LONGEST_NAME)}
+def tool_change(modal: WrittenState, tool: AnyTool, spindle: str) -> Iterator[str]:
+    """Yield the lines that bring a tool into the spindle, which is to turn at a speed; where it is is not known after them."""
+    filled = {"tool": tool.number, "name": plain(tool.name, LONGEST_NAME), "spindle": spindle}
     yield from (line.format(**filled) for line in modal.words.tool_change)
     modal.tool, modal.at, modal.coolant = tool.number, None, "off"
 
@@ -36,12 +36,12 @@ def approach(
     modal: WrittenState, tool: AnyTool, point: list[int], angle: list[int], changed: bool
 ) -> Iterator[str]:
     """Yield the lines of the first rapid, to a point and angles in ticks; `changed` after a tool change."""
-    words, rapid = modal.words, modal.words.motions[Motion.RAPID]
+    words, rapid = modal.words, modal.rapid
     plane_words = modal.plane.words(point, modal.scale.text)
     across = " ".join(w for w in plane_words if not w.startswith("Z"))
     down = next(w for w in plane_words if w.startswith("Z"))
-    turn = "".join(
-        f" {letter}{modal.degrees.text(v)}" for letter, v in zip(modal.letters, angle, strict=True)
+    turn = " ".join(
+        f"{letter}{modal.degrees.text(v)}" for letter, v in zip(modal.letters, angle, strict=True)
     )
     length = words.tool_length.format(tool=tool.number)
     unwinds = not changed and angle != (modal.angle or [])
@@ -49,11 +49,11 @@ def approach(
         yield words.top
     if changed or unwinds:
         if turn:
-            yield f"{rapid}{turn}"
-        yield f"{rapid} {across}"
-        yield f"{rapid} {length} {down}"
+            yield rapid([turn])
+        yield rapid([across])
+        yield rapid([length, down])
     else:
-        yield length
-        yield f"{rapid} {across} {down}{turn}"
+        yield from [length] if length else []
+        yield rapid([across, down, turn])
     modal.reached(point, angle, Motion.RAPID)
     modal.feed = ""

@@ -35,18 +35,26 @@ class CycleCallWriter:
         call = template.format(**self.values(block, feed))
         lines = []
         if call != self.call:
-            switch = (
-                [modal.switched(modal.feeds.mode)]
-                if modal.feeds.mode is not modal.feed_mode
-                else []
-            )
-            fed = [*switch, "F" + feed] if switch or feed != modal.feed else []
-            lines = [*self.ended(), *([" ".join(fed)] if fed else []), call]
-            self.call, modal.feed = call, feed
-        text = modal.scale.text
-        lines.append(f"{self.words.motions[Motion.RAPID]} X{text(x)} Y{text(y)}")
+            lines = self.defined(call, feed)
+            self.call = call
+        lines.append(self.position(x, y))
         modal.reached(path.point[block.last].tolist(), modal.angle or [], Motion.RAPID)
         return lines
+
+    def defined(self, call: str, feed: str) -> list[str]:
+        """Return the lines that say a cycle for the positions after them, and its feed."""
+        modal = self.modal
+        switch = (
+            [modal.switched(modal.feeds.mode)] if modal.feeds.mode is not modal.feed_mode else []
+        )
+        fed = [*switch, "F" + feed] if switch or feed != modal.feed else []
+        modal.feed = feed
+        return [*self.ended(), *([" ".join(fed)] if fed else []), call]
+
+    def position(self, x: int, y: int) -> str:
+        """Return the line of a hole, its place in ticks."""
+        text = self.modal.scale.text
+        return self.modal.rapid([f"X{text(x)}", f"Y{text(y)}"])
 
     def values(self, block: WrittenCycle, feed: str) -> dict[str, str]:
         """Return what stands in the braces of a call: heights, peck and pitch as lengths, the dwell in seconds."""

@@ -30,6 +30,17 @@ def block_of(path: WrittenPath, row: int) -> Block:
     return point, centre, int(path.motion[row]), float(path.feed[row])
 
 
+def sweep_of(path: WrittenPath, row: int) -> float:
+    """Return how far an arc turns, rad: a whole turn where it ends where it starts."""
+    if (path.point[row, :2] == path.point[row - 1, :2]).all():
+        return math.tau
+    (ax, ay), (bx, by) = (
+        (path.point[k, :2] - path.centre[row, :2]).tolist() for k in (row - 1, row)
+    )
+    turn = math.atan2(by, bx) - math.atan2(ay, ax)
+    return (turn if path.motion[row] == Motion.ARC_CCW else -turn) % math.tau
+
+
 def _is_whole(path: WrittenPath, row: int) -> bool:
     return bool((path.point[row, :2] == path.point[row - 1, :2]).all()) and path.dwell[row] == 0.0
 
@@ -44,18 +55,7 @@ def _goes_on(path: WrittenPath, row: int) -> bool:
 
 def _climbs_evenly(path: WrittenPath, first: int, last: int) -> bool:
     turns = math.tau * np.arange(1, last - first + 1)
-    total = math.tau * (last - first) + _sweep(path, last)
+    total = math.tau * (last - first) + sweep_of(path, last)
     start, end = float(path.point[first - 1, 2]), float(path.point[last, 2])
     even = start + turns / total * (end - start)
     return bool((np.abs(path.point[first:last, 2] - even) <= _SLACK).all())
-
-
-def _sweep(path: WrittenPath, row: int) -> float:
-    """Return how far an arc turns, rad: a whole turn where it ends where it starts."""
-    if (path.point[row, :2] == path.point[row - 1, :2]).all():
-        return math.tau
-    (ax, ay), (bx, by) = (
-        (path.point[k, :2] - path.centre[row, :2]).tolist() for k in (row - 1, row)
-    )
-    turn = math.atan2(by, bx) - math.atan2(ay, ax)
-    return (turn if path.motion[row] == Motion.ARC_CCW else -turn) % math.tau

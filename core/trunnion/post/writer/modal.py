@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import ClassVar
+
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode, per_revolution
 from trunnion.post.iso_words import IsoWords
@@ -25,12 +28,15 @@ class WrittenState:
     `feeds` is how the section's feeds are written, `plane` which letters its points have.
     """
 
+    scale_class: ClassVar[type[TickScale]] = TickScale
+    """How the control writes numbers."""
+
     def __init__(self, words: IsoWords, settings: PostSettings, letters: str) -> None:
         self.words, self.letters = words, letters
-        self.scale = TickScale.of(
+        self.scale = self.scale_class.of(
             settings, words.extra_decimals_inch, words.feed_decimals, words.point
         )
-        self.degrees = degrees_of(words)
+        self.degrees = degrees_of(words, self.scale_class)
         self.centre_words = CENTRES[words.centres]
         self.tool: int | None = None
         self.at: tuple[int, int, int] | None = None
@@ -42,6 +48,14 @@ class WrittenState:
     def reached(self, point: list[int], angle: list[int], motion: int) -> None:
         """Take over where a block ends and how it went."""
         self.at, self.angle, self.motion = (point[0], point[1], point[2]), angle, motion
+
+    def rapid(self, words: Iterable[str]) -> str:
+        """Return a rapid block of some words; empty ones are left out."""
+        return " ".join([self.words.motions[Motion.RAPID], *(w for w in words if w)])
+
+    def lines(self, block: Block, angle: list[int], minutes: float) -> list[str]:
+        """Return the lines that a block is on this control; see `block`."""
+        return [self.block(block, angle, minutes)]
 
     def block(self, block: Block, angle: list[int], minutes: float) -> str:
         """Return the words of a block that ends with the rotary axes at `angle`: only what changes, but both ends of an arc's plane.
@@ -101,9 +115,9 @@ class WrittenState:
         ]
 
 
-def degrees_of(words: IsoWords) -> TickScale:
+def degrees_of(words: IsoWords, scale_class: type[TickScale] = TickScale) -> TickScale:
     """Return how angles in degrees become written numbers."""
-    return TickScale(
+    return scale_class(
         unit=1.0,
         decimals=words.angle_decimals,
         feed_decimals=words.feed_decimals,

@@ -77,25 +77,40 @@ class ProgramWriter:
                 f"setup {setup.name}: {words.title} has no work offset {setup.work_offset}; "
                 f"it has {_range(words.work_offsets)}"
             )
-        yield from (comment(words, line) for line in self.header(header))
-        yield from (
-            line.format(program=plain(f"{header.name}.{setup.name}", words.line_length))
-            for line in words.opening
-        )
+        yield from self.opened(header)
         limit = trimmed(
             self.settings.path_tolerance / self.modal.scale.unit, self.modal.scale.decimals
         )
         filled = {
             "units": words.units[self.settings.units],
             "tolerance": limit,
-            "offset": setup.work_offset,
+            "offset": self.offset(),
         }
         yield from (self.numbered(line.format(**filled)) for line in words.start)
         for section in self.program.sections:
             yield from self.section(section)
         yield from map(self.numbered, self.left())
         yield from (self.numbered(line) for line in words.end)
-        yield from words.closing
+        yield from self.closed()
+
+    def opened(self, header: Header) -> Iterator[str]:
+        """Yield the header and what opens the program below it."""
+        words = self.words
+        yield from map(self.remark, self.header(header))
+        name = plain(f"{header.name}.{self.program.setup.name}", words.line_length)
+        yield from (line.format(program=name) for line in words.opening)
+
+    def closed(self) -> Iterator[str]:
+        """Yield the lines without numbers at the end."""
+        yield from self.words.closing
+
+    def remark(self, text: str) -> str:
+        """Return the line of a comment."""
+        return comment(self.words, text)
+
+    def offset(self) -> str:
+        """Return what names the setup's work offset."""
+        return self.program.setup.work_offset
 
     def header(self, header: Header) -> Iterator[str]:
         """Yield the lines of the header in words, the stamp first."""
@@ -120,24 +135,29 @@ class ProgramWriter:
         section = self.with_known_feeds(section)
         words, modal, tool = self.words, self.modal, section.tool
         refuse_unwritable(section, words.title, words.coolant)
-        yield comment(words, f"OPERATION {section.operation}")
-        yield comment(
-            words,
-            f"RESTART POINT N{self.number + self.settings.number_step} TOOL {tool.number} {tool.name}",
+        yield self.remark(f"OPERATION {section.operation}")
+        yield self.remark(
+            f"RESTART POINT {self.restart_point()} TOOL {tool.number} {tool.name}",
         )
         changes = tool.number != modal.tool
         if changes:
+            spindle = trimmed(section.spindle, 0)
             yield from map(self.numbered, self.left())
-            yield from map(self.numbered, tool_change(modal, tool))
-        yield self.numbered(words.restart.format(offset=self.program.setup.work_offset))
+            yield from map(self.numbered, tool_change(modal, tool, spindle))
+        if words.restart:
+            yield self.numbered(words.restart.format(offset=self.offset()))
         yield from map(self.numbered, self.plane(section))
-        yield self.numbered(self.spindle(section))
+        yield from map(self.numbered, self.spindle(section, changes))
         yield from map(self.numbered, coolant(modal, section.coolant))
         modal.feed_mode = FeedMode.MINUTE
         modal.feeds = FeedFormat(
             mode=section.feed_mode, spindle=section.spindle, surface_speed=section.surface_speed
         )
         yield from self.motions(section, changes)
+
+    def restart_point(self) -> str:
+        """Return how the line after the next one is called."""
+        return f"N{self.number + self.settings.number_step}"
 
     def plane(self, section: ProgramSection) -> Iterator[str]:
         """Yield the words of a section's plane where the program turns work; raise `Refused` where the control can't."""
@@ -156,8 +176,11 @@ class ProgramWriter:
         known = feed_word(self.words, section.feed_mode)
         return section if known else replace(section, feed_mode=FeedMode.MINUTE)
 
-    def spindle(self, section: ProgramSection) -> str:
-        """Return the words that turn the spindle; once a program has constant surface speeds, each section says what its S is."""
+    def spindle(self, section: ProgramSection, changed: bool) -> Iterator[str]:
+        """Yield the words that turn the spindle; once a program has constant surface speeds, each section says what its S is.
+
+        `changed` says that the tool has just come into it.
+        """
         words, turns = self.words, trimmed(section.spindle, 0)
         if section.surface_speed > 0.0:
             if not words.surface_speed:
@@ -166,9 +189,10 @@ class ProgramWriter:
                     "give a spindle speed or choose another control"
                 )
             speed = surface_text(section.surface_speed, self.settings.units)
-            return words.surface_speed.format(highest=turns, speed=speed)
+            yield words.surface_speed.format(highest=turns, speed=speed)
+            return
         surfaces = any(s.surface_speed > 0.0 for s in self.program.sections)
-        return (words.spindle_speed if surfaces else words.spindle).format(spindle=turns)
+        yield (words.spindle_speed if surfaces else words.spindle).format(spindle=turns)
 
     def motions(self, section: ProgramSection, changed: bool) -> Iterator[str]:
         """Yield the approach and the blocks of a section."""
@@ -181,11 +205,9 @@ class ProgramWriter:
 
     def blocks(self, section: ProgramSection, path: WrittenPath, minutes: Floats) -> Iterator[str]:
         """Yield the blocks of a section after its first, which the tool has reached already."""
-        modal = self.modal
-        numbered, words_of = self.numbered, modal.block
+        numbered, lines_of = self.numbered, self.modal.lines
         yield from map(numbered, self.waited(float(path.dwell[0]), section))
-        writer_class = CycleCallWriter if self.words.cycle_calls else CycleWriter
-        cycles, begins, after = writer_class(modal), {c.first: c for c in path.cycles}, 0
+        cycles, begins, after = self.cycles(), {c.first: c for c in path.cycles}, 0
         rows = zip(
             path.blocks(), path.more.tolist(), minutes.tolist(), path.dwell.tolist(), strict=True
         )
@@ -199,16 +221,22 @@ class ProgramWriter:
             yield from map(numbered, cycles.ended())
             if self.words.whole_turns and block[2] >= Motion.ARC_CW and time == 0.0:
                 last = last_of_helix(path, row)
-                turns = f" {self.words.whole_turns}{last - row}" if last > row else ""
-                yield numbered(
-                    words_of(block_of(path, last) if turns else block, turned, time) + turns
-                )
+                yield from map(numbered, self.arc(path, row, last))
                 after, dwell = last + 1, float(path.dwell[last])
             else:
-                yield numbered(words_of(block, turned, time))
+                yield from map(numbered, lines_of(block, turned, time))
             if dwell > 0.0:
                 yield from map(numbered, self.waited(dwell, section))
         yield from map(numbered, cycles.ended())
+
+    def cycles(self) -> CycleCallWriter | CycleWriter:
+        """Return what writes the drilling cycles of a section."""
+        return CycleCallWriter(self.modal) if self.words.cycle_calls else CycleWriter(self.modal)
+
+    def arc(self, path: WrittenPath, row: int, last: int) -> Iterator[str]:
+        """Yield the line of an arc, or of a helix that ends at a later row."""
+        turns = f" {self.words.whole_turns}{last - row}" if last > row else ""
+        yield self.modal.block(block_of(path, last), path.more[last].tolist(), 0.0) + turns
 
     def waited(self, seconds: float, section: ProgramSection) -> Iterator[str]:
         """Yield the line that makes the tool stand; raise `Refused` where the control has no words for it."""

@@ -40,6 +40,9 @@ def plane_across(axis: Floats, order: str, degrees: TickScale) -> TiltedPlane:
         angles = [math.atan2(-y, z), math.asin(max(-1.0, min(1.0, x))), 0.0]
         if math.hypot(y, z) < UPRIGHT:
             angles[0] = 0.0
+    elif order == "ZYX":
+        about_y = math.atan2(x, z) if math.hypot(x, z) > UPRIGHT else 0.0
+        angles = [0.0, about_y, -math.asin(max(-1.0, min(1.0, y)))]
     else:
         lean = math.atan2(math.hypot(x, y), z)
         angles = [math.atan2(x, -y) if lean > UPRIGHT else 0.0, lean, 0.0]

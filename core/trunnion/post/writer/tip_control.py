@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from trunnion.post.iso_words import IsoWords, code_of
 from trunnion.post.linearize import MARGIN, lines_for_arcs
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale, WrittenPath, written
-from trunnion.post.writer.modal import WrittenState, degrees_of
+from trunnion.post.writer.modal import WrittenState
 from trunnion.post.writer.program import ProgramWriter
 from trunnion.post.writer.rotary import AxisForm, ThreeAxes, inverse_minutes
 from trunnion.post.writer.tilted_plane import TiltedPlane, in_plane_of, plane_across, plane_rows
@@ -38,9 +39,9 @@ _SAME_DIRECTION = 1e-7
 class TipState(WrittenState):
     """The modal state of a text in which a tool axis is written as a vector, all three numbers of it."""
 
-    def __init__(self, words: IsoWords, settings: PostSettings) -> None:
-        super().__init__(words, settings, "")
-        self.vectors = TickScale(
+    def __init__(self, words: IsoWords, settings: PostSettings, letters: str = "") -> None:
+        super().__init__(words, settings, letters)
+        self.vectors = self.scale_class(
             unit=1.0,
             decimals=words.direction_decimals,
             feed_decimals=words.feed_decimals,
@@ -62,6 +63,8 @@ class TipWriter(ProgramWriter):
     the last section has left the tool in.
     """
 
+    arcs_in_space: ClassVar[bool] = True
+    """Whether arcs of an upright tool stay arcs while the control follows the tip."""
     tilted: TiltedPlane | None = None
     follows: bool = False
     axis: Floats | None = None
@@ -107,17 +110,16 @@ class TipWriter(ProgramWriter):
         """Yield a section in the plane across its tool; rapids that turn the tool there give way to one over the top."""
         words, modal, numbered = self.words, self.modal, self.numbered
         axis = section.path.axis[rows[0]]
-        degrees = replace(degrees_of(words), decimals=words.plane_decimals)
+        degrees = replace(modal.degrees, decimals=words.plane_decimals)
         plane = plane_across(axis, words.plane_order, degrees)
         known = self.tilted is not None and self.tilted.ticks == plane.ticks
         goes_on = not changed and modal.at is not None and known and rows[0] == 0
         if not changed and not goes_on:
             yield from map(numbered, [*self.left(), words.top])
             modal.at = None
-        if not self.joined_length(section.tool):
-            yield numbered(words.tool_length.format(tool=section.tool.number))
+        yield from map(numbered, self.lone_length(section.tool))
         a, b, c = (degrees.text(v) for v in plane.ticks)
-        side = "1" if self.first_lean(angle) > 0.0 else "-1"
+        side = self.side(plane, angle)
         yield from (numbered(line.format(a=a, b=b, c=c, side=side)) for line in words.plane)
         self.tilted, self.follows, self.axis = plane, False, plane.matrix[:, 2]
         local = in_plane_of(section.path, rows, plane)
@@ -140,10 +142,9 @@ class TipWriter(ProgramWriter):
         if not goes_on and not changed:
             yield from map(numbered, [*self.left(), words.top])
             modal.at = None
-        if not self.joined_length(section.tool):
-            yield numbered(words.tool_length.format(tool=section.tool.number))
+        yield from map(numbered, self.lone_length(section.tool))
         if not goes_on:
-            yield numbered(f"{words.motions[Motion.RAPID]}{self.turn_words(angle)}")
+            yield numbered(modal.rapid(self.turn_words(angle)))
         yield from (numbered(line.format(tool=section.tool.number)) for line in words.tip_control)
         self.tilted, self.follows, self.axis = None, True, section.path.axis[-1]
         modal.angle = None
@@ -154,6 +155,7 @@ class TipWriter(ProgramWriter):
     def tips(self, section: ProgramSection, vectors: TickScale) -> WrittenPath:
         """Return a section's blocks as tips and vectors in ticks; arcs of a tool that leans are lines."""
         leans = np.linalg.norm(section.path.axis[:, :2], axis=1) > UPRIGHT
+        leans |= not self.arcs_in_space
         arcs = np.flatnonzero((section.path.motion >= Motion.ARC_CW) & leans)
         opened, _ = lines_for_arcs(section.path, arcs, MARGIN * self.settings.straying)
         return written(opened, self.modal.scale, section.operation, vectors.ticks(opened.axis))
@@ -182,16 +184,14 @@ class TipWriter(ProgramWriter):
         length = "" if self.follows else self.joined_length(tool)
         first, angle = path.point[0].tolist(), path.more[0].tolist()
         if self.tilted is not None and self.tilted.upright and not goes_on:
-            across = f"X{modal.scale.text(first[0])} Y{modal.scale.text(first[1])}"
-            rapid = self.words.motions[Motion.RAPID]
-            yield from (f"{rapid} {across}", f"{rapid} {length}Z{modal.scale.text(first[2])}")
+            x, y, z = (letter + modal.scale.text(v) for letter, v in zip("XYZ", first, strict=True))
+            yield from (modal.rapid([x, y]), modal.rapid([length, z]))
             modal.reached(first, angle, Motion.RAPID)
         else:
             points = ([] if high is None else [modal.scale.ticks(high).tolist()]) + [first]
             for point in points:
-                at = " ".join(modal.plane.words(point, modal.scale.text))
-                turn = "".join(" " + word for word in modal.turned(angle))
-                yield f"{self.words.motions[Motion.RAPID]} {length}{at}{turn}"
+                at = modal.plane.words(point, modal.scale.text)
+                yield modal.rapid([length, *at, *modal.turned(angle)])
                 length = ""
             modal.reached(first, angle, Motion.RAPID)
         modal.feed = ""
@@ -199,7 +199,16 @@ class TipWriter(ProgramWriter):
     def joined_length(self, tool: AnyTool) -> str:
         """Return the words that switch a tool's length on in the line of a move, empty where they stand alone."""
         joined = code_of(self.words, "length")
-        return self.words.tool_length.format(tool=tool.number) + " " if joined else ""
+        return self.words.tool_length.format(tool=tool.number) if joined else ""
+
+    def lone_length(self, tool: AnyTool) -> Iterator[str]:
+        """Yield the line that switches a tool's length on where its words stand alone."""
+        if self.words.tool_length and not self.joined_length(tool):
+            yield self.words.tool_length.format(tool=tool.number)
+
+    def side(self, plane: TiltedPlane, angle: Floats) -> str:
+        """Return how the words of a plane say which of two ways to stand is meant, by angles (a,) in rad of the rotary axes."""
+        return "1" if self.first_lean(angle) > 0.0 else "-1"
 
     def keeps_direction(self, section: ProgramSection) -> bool:
         """Whether a section begins in the direction that the tool has, and the control can follow the tip from there without a move: what a
@@ -215,13 +224,13 @@ class TipWriter(ProgramWriter):
         turns = len(path) > 0 and not path.work_turns and plane_rows(path) is None
         return replace(section, feed_mode=FeedMode.MINUTE) if turns else section
 
-    def turn_words(self, angle: Floats) -> str:
+    def turn_words(self, angle: Floats) -> list[str]:
         """Return the words of the machine's own rotary axes, to stand near a direction before the control follows the tip."""
         assert self.work_position is not None
-        degrees = degrees_of(self.words)
+        degrees = self.modal.degrees
         ticks = degrees.ticks(np.degrees(angle)).tolist()
         names = zip(self.work_position.names, ticks, strict=True)
-        return "".join(f" {name}{degrees.text(v)}" for name, v in names)
+        return [name + degrees.text(v) for name, v in names]
 
     def first_lean(self, angle: Floats) -> float:
         """Return the angle of the axis that leans the tool, the first of two or the head's: its sign says which way to stand is meant."""

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.model.motion.cycle import MOST_PECKS
+from trunnion.post.readers.hole_strokes import HoleStroke
 from trunnion.post.readers.numbers import DWELL, FEED, SPINDLE
 from trunnion.post.readers.sinumerik.calls import CallParameters
 
@@ -19,16 +20,6 @@ SHALLOW, SHALLOW_LIMIT, DEEP_SHARE, DEEP_LIMIT = 30.0, 0.6, 50.0, 7.0
 """mm: how far above the last depth CYCLE83 begins to feed again where DIS1 is left out: 0.6 for holes to 30, else a fiftieth, at most 7."""
 CLOCKWISE = 3.0
 """The number of M3, as parameters say it."""
-
-
-class HoleStroke(NamedTuple):
-    """One move of a cycle to a height Z in mm, aside by `shift` (x, y) mm; `feed` mm/min or mm a revolution, 0 for the one in force, None
-    for a rapid."""
-
-    height: float
-    feed: float | None
-    dwell: float = 0.0
-    shift: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

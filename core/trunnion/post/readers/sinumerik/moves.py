@@ -8,9 +8,10 @@ from trunnion.findings import BadInput
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode, per_minute
 from trunnion.model.tool import AnyTool
+from trunnion.post.readers.hole_strokes import HoleStroke
 from trunnion.post.readers.numbers import NumberRange
 from trunnion.post.readers.sections import NOWHERE, CuttingState, Pace, Point
-from trunnion.post.readers.sinumerik.cycles import CycleCall, HoleStroke
+from trunnion.post.readers.sinumerik.cycles import CycleCall
 from trunnion.post.readers.tip_moves import TipMover
 from trunnion.post.readers.word_address.blocks import Block
 

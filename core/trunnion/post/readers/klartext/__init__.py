@@ -1,0 +1,1 @@
+"""Reads Klartext, Heidenhain's conversational format."""
