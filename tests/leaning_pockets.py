@@ -88,3 +88,19 @@ def random_block(seed: int) -> Any:
         corner,
         draw.choice((0.0, 1.0, 2.0, 3.0, 4.0)),
     )
+
+
+@cache
+def ribbed_block(lean: float = 5.0, depth: float = 12.0, lower: float = 4.0) -> Any:
+    """Return a block with two rows of two pockets whose walls lean away; between the rows, along both, a rib that is lower."""
+    wide, deep, apart = 60.0, 36.0, 6.0
+    size = (2.0 * wide + apart + 30.0, 2.0 * deep + apart + 30.0, BLOCK[2])
+    solid = cq.Workplane("XY").box(*size, centered=False)
+    for i in (0, 1):
+        for j in (0, 1):
+            at = (15.0 + (i + 0.5) * wide + i * apart, 15.0 + (j + 0.5) * deep + j * apart)
+            sketch = cq.Workplane("XY", origin=(*at, BLOCK[2] - depth)).sketch().rect(wide, deep)
+            solid = solid.cut(sketch.vertices().fillet(8.0).finalize().extrude(depth, taper=-lean))
+    middle = (15.0, 15.0 + deep - 1.0, BLOCK[2] - lower)
+    slot = cq.Workplane("XY").box(2.0 * wide + apart, apart + 2.0, lower, centered=False)
+    return solid.cut(slot.translate(middle)).val().wrapped

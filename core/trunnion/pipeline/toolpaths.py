@@ -108,6 +108,7 @@ def _make_one(
         drive=strategy.drive,
         leans=strategy.tool_axis(settings) is ToolAxis.LEANING,
         finds_rest=strategy.finds_rest,
+        past=strategy.goes_past(settings),
     )
     try:
         driven = planner.drive(operation, needs, scene, progress.part(0.0, DRIVEN))

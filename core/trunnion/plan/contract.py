@@ -6,6 +6,7 @@ use any strategy: it makes the drive geometry that the strategy declares.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -96,11 +97,12 @@ class ToolAxis(Enum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveNeeds:
     """What an operation's strategy needs: the class of its drive, whether its tool leans, whether it finds for itself what an earlier
-    cutter left."""
+    cutter left, and how far in mm its tips go past where they touch the faces."""
 
     drive: type
     leans: bool = False
     finds_rest: bool = False
+    past: float = math.inf
 
 
 class Scene(Protocol):

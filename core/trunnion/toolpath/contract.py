@@ -6,7 +6,8 @@
 `drive` is the class of drive geometry that the strategy works from: the planner of the part's family makes one for each operation.
 `tool_axis` says by the settings whether the tool keeps the axis of its cutting frame or leans from it. `leaves` are the codes of findings
 on what the strategy leaves to others, `settles` those of what it cuts where others leave it: a finding is kept quiet where another
-operation on the same faces settles it. `finds_rest`: the strategy finds for itself what an earlier cutter left.
+operation on the same faces settles it. `finds_rest`: the strategy finds for itself what an earlier cutter left. `goes_past` says by the
+settings how far in mm at most tips are past where they touch the drive's faces, by leads and overlaps; without it nobody knows.
 
 `meets` is the largest engagement that the strategy can meet, from which the planner takes the peak of the load (`toolpath.engagement` has
 those that several strategies share); without it a strategy promises to meet no more than the cutting data's depth and width.
@@ -17,6 +18,7 @@ to that height. What it can't cut is a finding with the area in mm2 and a remedy
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
@@ -65,6 +67,11 @@ def lead_and_tilt(settings: Any) -> ToolAxis:
     return ToolAxis.LEANING if settings.lead != 0.0 or settings.tilt != 0.0 else ToolAxis.FIXED
 
 
+def anywhere(settings: Any) -> float:
+    """Return that tips may be any distance past the faces, whatever the settings."""
+    return math.inf
+
+
 class Strategy(Protocol):
     """From drive geometry to motions; `settings` is the class of the settings it takes, the others as in the module's description."""
 
@@ -75,6 +82,7 @@ class Strategy(Protocol):
     settles: tuple[str, ...]
     finds_rest: bool
     meets: Meets
+    goes_past: Callable[[Any], float]
 
     def __call__(
         self,
@@ -105,6 +113,7 @@ def strategy(
     settles: tuple[str, ...] = (),
     finds_rest: bool = False,
     meets: Meets = as_planned,
+    goes_past: Callable[[Any], float] = anywhere,
 ) -> Callable[[F], F]:
     """Mark a function as a strategy and tell what it takes, what it leaves to others, and what engagement it can meet."""
     declared = {
@@ -115,6 +124,7 @@ def strategy(
         "settles": settles,
         "finds_rest": finds_rest,
         "meets": meets,
+        "goes_past": goes_past,
     }
 
     def mark(function: F) -> F:

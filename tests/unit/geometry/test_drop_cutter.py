@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trunnion.geometry.kernels.cutter_contact.drop_cutter import drop_cutter, height_at, radius_at
+from trunnion.geometry.kernels.cutter_contact.drop_cutter import drop_cutter, height_at
+from trunnion.geometry.kernels.cutter_contact.free_run import free_run
 from trunnion.geometry.kernels.cutter_contact.push_cutter import push_cutter
 from trunnion.geometry.kernels.cutter_contact.push_cutter_compiled import triangle_push
 from trunnion.geometry.lattice import lattice_of
@@ -271,17 +272,15 @@ def test_a_wall_of_small_facets_beside_large_ones_lifts_as_its_plain_form_does()
         assert np.abs(found - drop_cutter(at, points[triangles], cutter, LOWEST)).max() < 1e-9
 
 
-@pytest.mark.parametrize("name", CUTTERS)
-def test_a_cutter_begins_no_higher_than_asked_up_to_its_radius_there(name: str) -> None:
-    pieces = CUTTERS[name]
-    height = np.array([-1.0, 0.0, 0.01, 0.3, 1.0, 2.0, 50.0])
-    inside = radius_at(pieces, height)
-    assert inside[0] == 0.0 and inside[-1] == pieces[-1, 1]
-    assert (height_at(pieces, inside)[1:] <= height[1:] + 1e-9).all()
-    beyond = inside[1:] + 1e-6
-    assert (
-        height_at(pieces, beyond)[beyond < pieces[-1, 1]] > height[1:][beyond < pieces[-1, 1]]
-    ).all()
+def test_a_drop_ends_at_the_highest_height_that_is_asked_for() -> None:
+    points, triangles = wavy(30)
+    at = np.random.default_rng(6).uniform(0.0, 60.0, (300, 2))
+    surface = DropSurface.of(points, triangles)
+    whole = surface.drop(at, BULL, LOWEST)
+    for highest in (2.0, np.linspace(-8.0, 8.0, 300)):
+        found = surface.drop(at, BULL, LOWEST, highest=highest)
+        assert (found == np.minimum(whole, highest)).all()
+        assert (found < whole).any() and (found == whole).any()
 
 
 @pytest.mark.parametrize("name", CUTTERS)
@@ -302,3 +301,99 @@ def test_few_points_at_a_time_find_the_same_as_many_at_once(name: str) -> None:
         assert np.array_equal(found, whole, equal_nan=True)
         assert np.array_equal(some[:1], whole[:1], equal_nan=True)
     assert few[0] == pytest.approx(at_once[0][:300], abs=1e-12)
+
+
+CLOSE = 1e-6
+EAST = np.array([[1.0, 0.0]])
+
+
+def ran(points, triangles, start, height, most, cutter, direction=EAST):
+    """How far one tip goes, and whether it comes free."""
+    surface = DropSurface.of(np.array(points, dtype=float), np.array(triangles))
+    run, found = surface.free_run(
+        np.array([start], dtype=float),
+        direction,
+        np.array([height]),
+        np.array([most]),
+        cutter,
+        CLOSE,
+    )
+    return float(run[0]), bool(found[0])
+
+
+WALL = ([[10, -50, -5], [10, 50, -5], [10, 50, 5], [10, -50, 5]], [[0, 1, 2], [0, 2, 3]])
+"""An upright wall at x = 10, from z = -5 up to 5."""
+
+
+def test_a_flat_end_comes_free_of_a_wall_its_radius_away_from_it() -> None:
+    run, found = ran(*WALL, (7.0, 0.0), 0.0, 30.0, FLAT)
+    assert found and run == pytest.approx(10.0 + 8.0 - 7.0, abs=2.0 * CLOSE)
+
+
+def test_a_ball_comes_free_nearer_to_a_wall_whose_top_is_under_its_middle() -> None:
+    # The top is 1 mm above the tip of a ball of 3 mm: sqrt(9 - 4) beside its axis.
+    run, found = ran(*WALL, (10.0, 0.0), 4.0, 30.0, BALL)
+    assert found and run == pytest.approx(math.sqrt(5.0), abs=2.0 * CLOSE)
+
+
+def test_what_is_free_where_it_stands_has_no_way_to_go() -> None:
+    assert ran(*WALL, (30.0, 0.0), 0.0, 30.0, FLAT) == (0.0, False)
+
+
+def test_what_is_still_blocked_at_its_distance_does_not_come_free() -> None:
+    assert ran(*WALL, (7.0, 0.0), 0.0, 10.9, FLAT) == (0.0, False)
+    assert ran(*WALL, (7.0, 0.0), 0.0, 11.1, FLAT)[1]
+
+
+def test_a_second_wall_behind_the_first_one_is_gone_past_too() -> None:
+    points, triangles = WALL
+    both = [*points, *([x + 15.0, y, z] for x, y, z in points)]
+    far = [*triangles, *([k + 4 for k in t] for t in triangles)]
+    # 15 mm apart, less than twice the radius: no place between them is free.
+    run, found = ran(both, far, (7.0, 0.0), 0.0, 60.0, FLAT)
+    assert found and run == pytest.approx(25.0 + 8.0 - 7.0, abs=2.0 * CLOSE)
+
+
+@pytest.mark.parametrize("name", CUTTERS)
+def test_the_compiled_loop_finds_what_the_plain_one_does(name: str) -> None:
+    points, triangles = wavy(2)
+    rng = np.random.default_rng(4)
+    start, turn = rng.uniform(5.0, 55.0, (4, 2)), rng.uniform(0.0, 2.0 * math.pi, 4)
+    direction = np.column_stack([np.cos(turn), np.sin(turn)])
+    surface = DropSurface.of(points, triangles)
+    # Some way under where they would stand: blocked; the last one above: free.
+    height = surface.drop(start, CUTTERS[name], -100.0) - [0.2, 1.0, 2.0, -0.5]
+    most = np.full(4, 40.0)
+    run, found = surface.free_run(start, direction, height, most, CUTTERS[name], CLOSE)
+    plain, plainly = free_run(start, direction, height, most, points[triangles], CUTTERS[name])
+    assert found.tolist() == plainly.tolist() and 1 < found.sum() < 4
+    assert np.abs(run - plain).max() < 10.0 * CLOSE
+
+
+@pytest.mark.parametrize("name", ["bull", "ball"])
+def test_it_is_free_at_the_end_and_blocked_just_before(name: str) -> None:
+    points, triangles = wavy(40)
+    rng = np.random.default_rng(8)
+    n = CHUNK + 100
+    start, turn = rng.uniform(5.0, 55.0, (n, 2)), rng.uniform(0.0, 2.0 * math.pi, n)
+    direction = np.column_stack([np.cos(turn), np.sin(turn)])
+    surface = DropSurface.of(points, triangles)
+    height = surface.drop(start, CUTTERS[name], -100.0) - rng.uniform(0.01, 2.0, n)
+    run, found = surface.free_run(start, direction, height, np.full(n, 20.0), CUTTERS[name], CLOSE)
+    assert found.mean() > 0.5
+    for at, is_blocked in ((run, False), (run - 3.0 * CLOSE, True)):
+        over = surface.drop(start + at[:, None] * direction, CUTTERS[name], -100.0)
+        assert ((over > height)[found] == is_blocked).all()
+
+
+def test_the_order_of_tips_changes_nothing() -> None:
+    points, triangles = wavy(20)
+    rng = np.random.default_rng(9)
+    start = rng.uniform(5.0, 55.0, (200, 2))
+    surface = DropSurface.of(points, triangles)
+    height = surface.drop(start, BULL, -100.0) - 1.0
+    direction = np.broadcast_to(EAST, (200, 2))
+    most = np.full(200, 20.0)
+    run, found = surface.free_run(start, direction, height, most, BULL, CLOSE)
+    back = surface.free_run(start[::-1], direction, height[::-1], most, BULL, CLOSE)
+    assert (back[1][::-1] == found).all() and np.abs(back[0][::-1] - run).max() < 3.0 * CLOSE

@@ -13,12 +13,14 @@ import pytest
 import leaning_pockets
 import samples
 from trunnion import tolerance
+from trunnion.geometry.plane.region import union_all
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.plan.panel.feasibility import plannable
+from trunnion.plan.panel.feasibility import adjacent, plannable
 from trunnion.plan.panel.freeform.pocket import FreeformPocket
 from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.progress import NO_PROGRESS
 
 SHAPES = {
@@ -167,6 +169,29 @@ def test_a_thinner_cutter_comes_after_a_sharp_end_that_a_falling_floor_keeps_off
     first, rest = (o for o in operations("hill").values() if o.kind == "leaning_side")
     assert rest.choices["surface.earlier"] == first.tool.name
     assert first.tool.corner_radius == 0.0 and rest.tool.diameter < first.tool.diameter
+
+
+def test_each_pocket_has_its_own_share_of_a_rib_that_goes_past_several() -> None:
+    engine = Engine()
+    session = engine.run(engine.open(samples.written(leaning_pockets.ribbed_block())), "blank")
+    found, part = session.recognition, engine.context.part
+    assert found is not None and session.blank is not None
+    setup = make_setups(found, session.blank, SetupSettings())[0]
+    space = SetupSpace.of(part, found, session.blank, setup)
+    curved = SurfaceSpace.of(part, engine.context.skin(tolerance.CHORD), session.blank, setup)
+    beside = adjacent(found, part)
+    (rib,) = found.of_kind("rib")
+    whole = part.face_outline(setup.frame, rib.with_role("top")[0])
+    pockets = [FreeformPocket.of(f, space, curved, beside[f.id]) for f in found.of_kind("pocket")]
+    assert len(pockets) == 4
+    for pocket in pockets:
+        ((height, share),) = pocket.ribs
+        assert height < pocket.top and 0.4 * whole.area < share.area < 0.6 * whole.area
+        # What is its own at the top is not much wider than its mouth: by the rib, and by its walls on the way there.
+        (low, high), (inner, outer) = pocket.limit(pocket.top).box(), pocket.mouth.box()
+        assert (low > inner - 12.0).all() and (high < outer + 12.0).all()
+    # Together they have all of it.
+    assert whole.minus(union_all([p.limit(p.top) for p in pockets])).area < 1e-3
 
 
 def test_a_typical_plan_without_layers_refuses_leaning_walls() -> None:

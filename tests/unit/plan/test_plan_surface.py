@@ -36,7 +36,7 @@ from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.freeform.reach import reached, samples_on
 from trunnion.plan.freeform.roughing.heights import HeightMap, region_below
 from trunnion.plan.freeform.roughing.layers import level_faces
-from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.freeform.space import SurfaceSpace, skin_around
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.views import StockViews
 
@@ -391,3 +391,23 @@ def test_an_area_without_anything_low_is_empty():
     assert not region_below(np.full((3, 3), 5.0), np.zeros(2), 1.0, 1.0, 0.01)
     whole = region_below(np.zeros((3, 3)), np.zeros(2), 1.0, 1.0, 0.01)
     assert whole.area == pytest.approx(Region.rectangle(0.01, 0.01, 1.99, 1.99).area)
+
+
+def test_what_a_cutter_comes_near_to_is_kept_of_a_skin_and_no_more():
+    # A wide wavy floor, and a little of it that is finished.
+    skin = grid(lambda x, y: np.sin(x / 7.0) * np.cos(y / 5.0), n=160, low=(0, 0), high=(400, 300))
+    middle = skin.points[skin.triangles].mean(axis=1)
+    mine = (np.abs(middle[:, :2] - [200.0, 150.0]) < 12.0).all(axis=1)
+    skin = replace(skin, face=np.where(mine, 2, 1))
+    near = skin_around(skin, (2,), [BALL_4, BALL_6], 5.0)
+    assert near.of((2,)).sum() == mine.sum() and len(near.triangles) < 0.1 * len(skin.triangles)
+    # Tips come a radius from where they touch and 5 mm more, the widest of the tool as far again.
+    corners = skin.points[skin.triangles[mine]].reshape(-1, 3)[:, :2]
+    off = BALL_6.radius + 5.0
+    tips = np.random.default_rng(5).uniform(
+        corners.min(axis=0) - off, corners.max(axis=0) + off, (400, 2)
+    )
+    for z, radius in BALL_6.rings():
+        disc = np.array([[0.0, radius, 0.0, 0.0, 0.0, 0.0]])
+        if z < 10.0:
+            assert (near.drop.drop(tips, disc, -9.0) == skin.drop.drop(tips, disc, -9.0)).all()

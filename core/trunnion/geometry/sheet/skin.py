@@ -49,6 +49,21 @@ class Skin:
         """Return which triangles (t,) lie on faces of some tags."""
         return np.isin(self.face, tags)
 
+    def near(self, low: Floats, high: Floats) -> Skin:
+        """Return the skin without the triangles that lie beside a box in plan with corners (2,): what is in it or over and under it."""
+        corners = self.points[self.triangles][..., :2]
+        inside = (corners.max(axis=1) >= low).all(axis=1) & (corners.min(axis=1) <= high).all(
+            axis=1
+        )
+        used, rows = np.unique(self.triangles[inside], return_inverse=True)
+        return replace(
+            self,
+            points=self.points[used],
+            normals=self.normals[used],
+            triangles=rows.reshape(-1, 3),
+            face=self.face[inside],
+        )
+
     def areas(self, rows: Bools | slice = slice(None)) -> Floats:
         """Return the areas (k,) of some triangles in mm2, of all without rows."""
         a, b, c = np.moveaxis(self.points[self.triangles[rows]], 1, 0)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.kernels.cutter_contact import drop_cutter_compiled as kernel
 from trunnion.geometry.kernels.cutter_contact.drop_bvh import (
     BOX_COLUMNS,
@@ -16,6 +16,7 @@ from trunnion.geometry.kernels.cutter_contact.drop_bvh import (
     bvh_sort_loop,
 )
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, A, C
+from trunnion.geometry.kernels.cutter_contact.free_run_compiled import free_run_loop
 from trunnion.geometry.kernels.cutter_contact.push_cutter_compiled import push_cutter_loop
 from trunnion.geometry.lattice import Lattice, lattice_of
 from trunnion.progress import NO_PROGRESS, Progress
@@ -83,15 +84,18 @@ class DropSurface:
         pieces: Floats,
         lowest: float | Floats,
         progress: Progress = NO_PROGRESS,
+        highest: float | Floats = np.inf,
     ) -> Floats:
         """Return the height (n,) of a cutter's tip over plan points (n, 2) when it comes down and touches, at least `lowest`, a height for
-        all or for each (n,).
+        all or for each (n,), and at most `highest`, which is quicker where it is touched higher than that.
 
         `pieces` (p, 6) is the cutter's lower side as `kernels/drop_cutter.py` describes it. Points that follow a
         path are quicker than loose ones. Inside boxes that are avoided it is at least their height.
         """
-        height = self.contacts(points, pieces, lowest, progress)[0]
-        return np.maximum(height, tops_over(points, self.avoid)) if len(self.avoid) else height
+        height = self._found(points, pieces, lowest, highest, progress)[0]
+        if len(self.avoid):
+            height = np.maximum(height, tops_over(points, self.avoid))
+        return np.minimum(height, highest)
 
     def contacts(
         self,
@@ -104,11 +108,22 @@ class DropSurface:
 
         Where two triangles meet it is one of them; over nothing that is higher than `lowest`, -1 and NaN.
         """
+        return self._found(points, pieces, lowest, np.inf, progress)
+
+    def _found(
+        self,
+        points: Floats,
+        pieces: Floats,
+        lowest: float | Floats,
+        highest: float | Floats,
+        progress: Progress,
+    ) -> tuple[Floats, Ints, Floats]:
+        """Return what `contacts` does; where the height is no less than `highest`, any touch that is as high."""
         n = len(points)
         out, facet, contact = np.empty(n), np.empty(n, np.int64), np.empty((n, 3))
         points = np.ascontiguousarray(points, dtype=np.float64)
         lifts = self._lifted(pieces, n > CHUNK)
-        floor = np.full(n, lowest, dtype=np.float64)
+        floor, ceiling = (np.full(n, v, dtype=np.float64) for v in (lowest, highest))
 
         def work(first: int, last: int) -> None:
             kernel.drop_cutter_loop(
@@ -123,6 +138,7 @@ class DropSurface:
                 pieces,
                 _ball(pieces),
                 floor,
+                ceiling,
                 out,
                 facet,
                 contact,
@@ -130,6 +146,51 @@ class DropSurface:
 
         in_parallel(work, n, CHUNK, progress, "Dropping the cutter")
         return out, np.where(facet >= 0, self.row[facet], -1), contact
+
+    def free_run(
+        self,
+        points: Floats,
+        direction: Floats,
+        height: Floats,
+        most: Floats,
+        pieces: Floats,
+        close: float,
+        progress: Progress = NO_PROGRESS,
+    ) -> tuple[Floats, Bools]:
+        """Return how far (n,) tips over plan points (n, 2) at heights (n,) go along unit directions (n, 2) until nothing blocks them, no
+        more than `close` mm farther than they need, and whether they were blocked and come free within distances (n,); 0 where not.
+
+        `pieces` as for `drop`; no box is avoided. Points that follow a path are quicker than loose ones.
+        """
+        n = len(points)
+        out, found = np.empty(n), np.empty(n, dtype=bool)
+        points, direction, height, most = (
+            np.ascontiguousarray(v, dtype=np.float64) for v in (points, direction, height, most)
+        )
+        lifts = self._lifted(pieces, n > CHUNK)
+
+        def work(first: int, last: int) -> None:
+            free_run_loop(
+                first,
+                last,
+                points,
+                direction,
+                height,
+                most,
+                close,
+                self.facets,
+                self.start,
+                self.boxes,
+                *self.planes,
+                *lifts,
+                pieces,
+                _ball(pieces),
+                out,
+                found,
+            )
+
+        in_parallel(work, n, CHUNK, progress, "Pushing the cutter")
+        return out, found
 
     def push(
         self, lines: Floats, pieces: Floats, progress: Progress = NO_PROGRESS

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -37,6 +38,9 @@ from trunnion.settings import digest
 
 AROUND = 45.0
 """mm: how far free space is looked at around the blank: two diameters of the largest cutter, but no way for it to wander."""
+
+PAST = 10.0
+"""mm more than tools come near to while they finish faces: as far as they are taken longer or wider where they are tested."""
 
 LEFTOVER = 2.0
 """Times the depth of cut: what operations before leave on faces at most."""
@@ -138,6 +142,9 @@ class SurfaceSpace:
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if within is not None:
             skin, faces = parted_within(skin, faces, within)
+        if not needs.leans and needs.past < math.inf:
+            tools = [t for t in (operation.cutter, earlier, upright) if t is not None]
+            skin = skin_around(skin, faces, tools, thickness + extension + needs.past)
         if earlier is not None and not needs.finds_rest:
             own = None if needs.leans else operation.cutter
             skin, faces = remaining_of(skin, faces, earlier, lowest, height, progress, own)
@@ -211,3 +218,17 @@ class SurfaceSpace:
         return notice(
             operation.feature, f"{refused.area:.0f} mm2", refused.by, operation.cutter, at, where
         )
+
+
+def skin_around(skin: Skin, tags: tuple[int, ...], tools: Sequence[Tool], more: float) -> Skin:
+    """Return what of a skin upright tools may come near to, by `more` mm than they touch it, while they finish faces: a part has many
+    pockets, and each operation is in one."""
+    mine = skin.points[skin.triangles[skin.of(tags)]].reshape(-1, 3)
+    if not len(mine):
+        return skin
+    low, high = mine.min(axis=0), mine.max(axis=0)
+    # What of a tool is higher over the lowest place of the faces than the part is high meets nothing.
+    above = float(skin.points[:, 2].max() - low[2]) + PAST
+    wide = max(r for t in tools for z, r in t.rings() if z < above)
+    around = max(t.radius for t in tools) + wide + more + PAST
+    return skin.near(low[:2] - around, high[:2] + around)

@@ -49,6 +49,7 @@ class ConstantSettings:
     leaves=(TOO_STEEP,),
     settles=(TOO_SHALLOW,),
     meets=surface_leftovers,
+    goes_past=lambda settings: 2.0 * settings.lead_radius,
 )
 def constant(
     drive: SurfaceDrive,

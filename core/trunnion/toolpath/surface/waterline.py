@@ -1,8 +1,7 @@
 """Finishing steep faces and upright walls level by level, the tip at one height all round.
 
 At a height the cutter is blocked where a drop would be higher: the rim of that area is the pass. It is found on a grid of drops, put
-exactly on the grid's lines and then between them by halving, always on the free side, and cut where the cutter touches the area. From a
-blocked position the rim is no nearer than where the cutter, at its height, gets past what a drop touches: few such steps come to it.
+exactly on the grid's lines and then between them by halving, always on the free side, and cut where the cutter touches the area.
 """
 
 from __future__ import annotations
@@ -17,7 +16,6 @@ from scipy.spatial import cKDTree
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.kernels.cutter_contact.drop_cutter import radius_at
 from trunnion.geometry.sheet.contours import SheetLine, whole_levels
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -47,8 +45,6 @@ MARGIN = 6
 """Cells round the area's tips that are looked at: as far as the cutter goes away from both sides of an edge that it rolls round."""
 CLOSE = 2e-5
 """mm: how near to the rim of what is blocked a tip is put."""
-STEPS, DIRECT = 40, 2
-"""Of a search, which mostly ends after two; and after how many every other one is longer."""
 HALVINGS = 16
 SEEN, THINNED = 0.25, 0.4
 """Shares of the chord error: how far the rim may be from the middle of a chord, and a position that is taken out from its chord."""
@@ -129,6 +125,7 @@ class WaterlineSettings:
     leaves=(TOO_SHALLOW,),
     settles=(TOO_STEEP,),
     meets=surface_leftovers,
+    goes_past=lambda settings: settings.overlap + 2.0 * settings.lead_radius,
 )
 def waterline(
     drive: SurfaceDrive,
@@ -219,35 +216,9 @@ class _Blocked:
         """Return how far (n,) the rim of what is blocked is from blocked plan points (n, 2) along unit directions (n, 2): as far as the
         free side, no more than `CLOSE` from it. Also return whether it is there, no farther than `most` (n,); from a free place it
         isn't."""
-        low, high = np.zeros(len(z)), np.full(len(z), np.inf)
-        at, rows = low.copy(), np.arange(len(z))
-        for k in range(STEPS):
-            positions = start[rows] + at[rows, None] * direction[rows]
-            _, facet, contact = self.drive.skin.drop.contacts(
-                positions, self.pieces, z[rows] + tolerance.COINCIDENT, self.progress
-            )
-            hits = facet >= 0
-            high[rows[~hits]] = at[rows[~hits]]
-            aside = contact[hits, :2] - start[rows[hits]]
-            ahead = (aside * direction[rows[hits]]).sum(axis=1)
-            lateral = (aside * aside).sum(axis=1) - ahead * ahead
-            reach = radius_at(self.pieces, contact[hits, 2] - z[rows[hits]])
-            low[rows[hits]] = np.maximum(
-                ahead + np.sqrt(np.maximum(reach * reach - lateral, 0.0)), at[rows[hits]]
-            )
-            rows = rows[(low[rows] < most[rows]) & (high[rows] - low[rows] > CLOSE)]
-            if not len(rows):
-                break
-            at[rows] = low[rows] + 0.5 * CLOSE
-            if k >= DIRECT and k % 2:
-                # Where every touch is another one, on level ground and beside straight edges, such steps are short.
-                at[rows] = np.where(
-                    high[rows] < np.inf,
-                    0.5 * (low + high)[rows],
-                    np.minimum(low[rows] + CLOSE * 4.0**k, most[rows]),
-                )
-        found = (high > 0.0) & (high < np.inf)
-        return np.where(found, high, 0.0), found
+        return self.drive.skin.drop.free_run(
+            start, direction, z + tolerance.COINCIDENT, most, self.pieces, CLOSE, self.progress
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -127,3 +127,16 @@ def test_following_looks_at_cancel() -> None:
             LOWEST,
             Progress(cancelled=lambda: asked.append(1) or len(asked) > 1),
         )
+
+
+def test_each_line_is_followed_between_its_own_heights_alone() -> None:
+    surface = grid(lambda x, y: 4.0 * np.sin(x / 4.0))
+    lines = [np.array([[4.0, y], [26.0, y]]) for y in (8.0, 15.0, 22.0)]
+    lowest, highest = np.array([LOWEST, -1.0, 1.0]), np.array([np.inf, 1.5, 2.0])
+    paths = follow(surface, BALL, lines, CHORD, lowest, highest=highest)
+    x = np.linspace(4.0, 26.0, 300)
+    for path, line, low, high in zip(paths, lines, lowest, highest, strict=True):
+        rests = surface.drop(np.column_stack([x, np.full(300, line[0, 1])]), BALL, LOWEST)
+        found = np.interp(x, path[:, 0], path[:, 2])
+        assert np.abs(found - np.clip(rests, low, high)).max() < 3.0 * CHORD
+    assert len(paths[1]) < len(paths[0])

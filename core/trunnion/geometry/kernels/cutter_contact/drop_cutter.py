@@ -51,22 +51,6 @@ def slope_at(pieces: Floats, rho: Floats) -> Floats:
     return np.where(rho <= 0.0, 0.0, out)
 
 
-def radius_at(pieces: Floats, height: Floats) -> Floats:
-    """Return as far as which from the axis the cutter begins no higher than heights (n,) above the tip; 0 below that."""
-    height = np.asarray(height, dtype=np.float64)
-    out = np.zeros(height.shape)
-    for rho0, rho1, is_round, a, b, c in pieces:
-        if is_round:
-            begins, reach = (
-                b - np.sqrt(max(c * c - (rho0 - a) ** 2, 0.0)),
-                a + np.sqrt(c * c - np.clip(b - height, 0.0, c) ** 2),
-            )
-        else:
-            begins, reach = a, rho0 + (height - a) / b if b > 0.0 else np.full(height.shape, rho1)
-        out = np.where(height >= begins, np.clip(reach, rho0, rho1), out)
-    return out
-
-
 def drop_cutter(points: Floats, corners: Floats, pieces: Floats, lowest: float) -> Floats:
     """Return the height (n,) of the tip over plan points (n, 2) when it touches triangles (t, 3, 3), at least `lowest`."""
     out = np.full(len(points), lowest)

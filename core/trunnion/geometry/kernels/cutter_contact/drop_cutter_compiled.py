@@ -608,12 +608,14 @@ def drop_cutter_loop(
     pieces: Floats,
     ball: float,
     lowest: Floats,
+    highest: Floats,
     out: Floats,
     facet: Ints,
     contact: Floats,
 ) -> None:
     """Fill out[first:last] with the tip's height (mm) over plan points (n, 2) when the cutter touches
-    facets (t, 19), at least lowest (n,).
+    facets (t, 19), at least lowest (n,). Where that is no less than highest (n,) the search ends at any facet that lifts the
+    tip as high.
 
     Facets lie in a tree as `drop_bvh` makes it: start (leaves + 1,), boxes (nodes, 5). planes (t, 3) and
     node_planes (nodes, 3) are those that nothing of a facet or a node's facets is above, lifts (t, 8) and
@@ -642,7 +644,8 @@ def drop_cutter_loop(
         # is on the stack.
         nodes[0], reaches[0] = 0, np.inf
         waiting = 1
-        while waiting > 0:
+        enough = highest[n]
+        while waiting > 0 and best < enough:
             waiting -= 1
             node = nodes[waiting]
             reach = reaches[waiting]

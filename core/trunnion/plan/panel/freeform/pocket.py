@@ -41,7 +41,7 @@ class FreeformPocket:
 
     `level` are the tags of its level floors, `curved` those of its curved ones, `sides` those of all that stands around and in it, islands'
     too. `bottom` and `top` are heights, `rim` that of its lowest rim; `mouth` is the plan area that is free just below the rim; `ribs` are
-    outlines of lower ribs beside it with their heights. `growth` and `hang` are by how much its walls lean away and
+    the shares of lower ribs' outlines that are beside it, with their heights. `growth` and `hang` are by how much its walls lean away and
     over at most, in mm a mm of height. `fillet` is the smallest radius at the foot of its sides, 0 where one is sharp.
     """
 
@@ -84,7 +84,13 @@ class FreeformPocket:
         rim = min(space.height(lowest), top) if "lowest_rim_z" in feature.sizes else top
         sides = tuple(dict.fromkeys(t for f in (feature, *islands) for t in f.with_role(*SIDES)))
         band = space.area_at(feature, rim - tolerance.OFF_PLANE)
+        mouth = band.boundary.intersect(band.wanted.offset(AROUND))
+        growth = _growth(curved, feature.with_role("outer_convergence", "corner"), 1.0)
+        hang = _growth(curved, feature.with_role("inner_convergence", "corner"), -1.0)
         ribs = [f for f in space.recognition.of_kind("rib") if f.id in beside]
+        # As far past the mouth as the thickest of them is thick: where ribs cross, one ends beyond another.
+        thick = max((float(np.max(r.sizes.get("thickness", 0.0))) for r in ribs), default=0.0)
+        past = thick + max(growth, hang) * (top - rim)
         return FreeformPocket(
             feature=feature,
             space=space,
@@ -93,16 +99,17 @@ class FreeformPocket:
             sides=sides,
             tops=tuple(space.island_top(i) for i in islands),
             ribs=tuple(
-                (float(space.centre(t)[2]), space.part.face_outline(frame, t))
+                (float(space.centre(t)[2]), own)
                 for rib in ribs
                 for t in rib.with_role("top")
+                if (own := _beside(space.part.face_outline(frame, t), mouth, past))
             ),
             bottom=min(heights),
             top=top,
             rim=rim,
-            mouth=band.boundary.intersect(band.wanted.offset(AROUND)),
-            growth=_growth(curved, feature.with_role("outer_convergence", "corner"), 1.0),
-            hang=_growth(curved, feature.with_role("inner_convergence", "corner"), -1.0),
+            mouth=mouth,
+            growth=growth,
+            hang=hang,
             fillet=min(floor_fillet(f) for f in (feature, *islands)),
         )
 
@@ -180,6 +187,14 @@ class FreeformPocket:
             levels.append(DriveLevel(top=above, bottom=z, wanted=wanted, boundary=boundary))
             above = z
         return floors, tuple(levels)
+
+
+def _beside(outline: Region, mouth: Region, past: float) -> Region:
+    """Return what of a rib's outline is no farther than `past` mm beside a mouth: a rib may go all across the part, past many pockets, each
+    of which has its own share."""
+    low, high = mouth.box()
+    around = past + MARGIN
+    return outline.intersect(Region.rectangle(*(low - around), *(high + around)))
 
 
 def _growth(curved: SurfaceSpace, tags: tuple[int, ...], away: float) -> float:

@@ -31,10 +31,12 @@ def follow(
     pieces: Floats,
     curves: Sequence[Floats],
     chord: float,
-    lowest: float,
+    lowest: float | Floats,
     progress: Progress = NO_PROGRESS,
+    highest: float | Floats = np.inf,
 ) -> list[Floats]:
-    """Return the tips (n, 3) of a cutter that follows each plan polyline (k, 2), as high as `DropSurface.drop` puts them.
+    """Return the tips (n, 3) of a cutter that follows each plan polyline (k, 2), as high as `DropSurface.drop` puts them between a lowest
+    and a highest height, for all or for each polyline.
 
     Between two tips lies a straight move that leaves the cutter's path by at most `chord` mm; the ends and every kink of the path stay.
     Where nothing is under the cutter its tip is at `lowest`.
@@ -43,9 +45,13 @@ def follow(
         return []
     # Drop at even steps, close enough that nothing as wide as the cutter sees hides between two.
     positions, line = _spaced(curves, 2.0 * _sight(pieces, chord))
-    tips = np.column_stack(
-        [positions, drop.drop(positions, pieces, lowest, progress.part(0.0, 0.3))]
-    )
+    floor, ceiling = (np.full(len(curves), v, dtype=np.float64) for v in (lowest, highest))
+
+    def dropped(plan: Floats, of: Ints, share: Progress) -> Floats:
+        height = drop.drop(plan, pieces, floor[of], share, ceiling[of])
+        return np.column_stack([plan, height])
+
+    tips = dropped(positions, line, progress.part(0.0, 0.3))
     # Halve: invariant, `is_open[k]` marks the chord from tip k to k + 1 whose middle may still be off it by more than SEEN chord.
     is_open = np.append(line[1:] == line[:-1], False)
     for k in range(HALVINGS):
@@ -54,7 +60,7 @@ def follow(
             break
         middles = 0.5 * (tips[rows, :2] + tips[rows + 1, :2])
         share = progress.part(1.0 - 0.7 * 0.5**k, 1.0 - 0.7 * 0.5 ** (k + 1))
-        found = np.column_stack([middles, drop.drop(middles, pieces, lowest, share)])
+        found = dropped(middles, line[rows], share)
         is_open[rows] = chord_distance(found, tips[rows], tips[rows + 1]) > SEEN * chord
         tips, line = np.insert(tips, rows + 1, found, axis=0), np.insert(line, rows + 1, line[rows])
         is_open = np.insert(is_open, rows + 1, is_open[rows])

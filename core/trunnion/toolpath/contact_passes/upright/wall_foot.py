@@ -21,6 +21,8 @@ from trunnion.toolpath.contact_passes.upright.wall_levels import FOOT, OFF
 
 LEAST = 0.05
 """mm: a foot that is no farther under a level, or over the next one, has no pass of its own."""
+BELOW = 2.0 * LEAST
+"""mm under the next level: how far feet are looked for at all."""
 STEEPEST = 1.0
 """Height over way in plan: where the foot is steeper, on its way to another floor, a pass ends."""
 
@@ -49,17 +51,23 @@ def foot_passes(
         return []
     off = OFF + 2.0 * chord
     lines = [p.tip[:, :2] + off * p.normal[:, :2] for p, _ in over_others]
+    # Nobody asks for more than whether it is lower than the level, as on a wall that leans it hardly is, or than the next one, as over a
+    # floor that lies deeper.
+    raised = drive.allowance + FOOT
+    highest = np.array([p.tip[0, 2] - LEAST for p, _ in over_others]) - drive.allowance
+    lowest = np.array([levels[n - 1] - BELOW for _, n in over_others]) - raised
     followed = follow(
         drive.skin.drop,
         lower_side(tool, drive.allowance),
         lines,
         chord,
-        float(drive.low[2]) - tool.flute_length,
+        lowest,
         progress,
+        highest,
     )
     found: list[Pass] = []
     for (made, n), tips in zip(over_others, followed, strict=True):
-        foot = tips + [0.0, 0.0, drive.allowance + FOOT]
+        foot = tips + [0.0, 0.0, raised]
         over = foot[:, 2] - levels[n - 1]
         lower = [p for p, m in zip(passes, level, strict=True) if m == n - 1]
         wanted = (over > LEAST) | ((over > -LEAST) & ~_beside(foot, lower))
