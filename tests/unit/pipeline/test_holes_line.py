@@ -74,13 +74,16 @@ def test_every_hole_is_one_cycle_of_its_operation():
     assert kinds == {CycleKind.DRILL, CycleKind.CHIP_BREAK, CycleKind.PECK}
 
 
-@pytest.mark.parametrize("dialect", ["linuxcnc", "apt"])
-def test_programs_for_two_controls_are_read_back_and_prove_the_same(dialect):
+@pytest.mark.parametrize("dialect", ["linuxcnc", "apt", "heidenhain"])
+def test_programs_for_several_controls_are_read_back_and_prove_the_same(dialect):
     session = drilled(("post.dialect", dialect))
     assert session.verdict.outcome is Outcome.PASSED
     text = next(f.text for f in session.posted if f.setup)
     if dialect == "linuxcnc":
         assert text.count("G81") == 3 and text.count("G83") == 1 and text.count("G73") == 1
+    if dialect == "heidenhain":
+        assert [text.count(f"CYCL DEF {n} ") for n in (200, 205, 203)] == [3, 1, 1]
+        assert text.count("M99") == 8
 
 
 def test_the_load_of_drills_is_foreseen():

@@ -216,6 +216,23 @@ def test_a_helix_of_more_turns_than_a_block_takes_is_several():
     assert angles == ["IPA+5400.0", "IPA+5400.0", "IPA+720.0"]
 
 
+def test_parts_of_turns_that_climb_evenly_are_one_block():
+    halves = [(CCW, (-1) ** k * 5.0, 0, -0.5 * k, 0, 0, 300.0) for k in range(1, 6)]
+    blocks = [(RAPID, 5, 0, 50), (LINE, 5, 0, 0, 300.0), *halves, (RAPID, -5, 0, 50)]
+    assert "CP IPA+900.0 IZ-2.5 DR+ R0" in lines_of(one(*blocks))
+    steeper = (CCW, 5, 0, -3.5, 0, 0, 300.0)
+    lines = lines_of(one(*blocks[:-1], steeper, (RAPID, 5, 0, 50)))
+    k = lines.index("CP IPA+900.0 IZ-2.5 DR+ R0")
+    assert lines[k + 1] == "CP IPA+180.0 IZ-1.0 DR+ R0"
+
+
+def test_arcs_about_one_centre_that_do_not_climb_stay_arcs():
+    halves = [(CCW, (-1) ** k * 5.0, 0, 0, 0, 0, 300.0) for k in (1, 2)]
+    lines = lines_of(one((RAPID, 5, 0, 50), (LINE, 5, 0, 0, 300.0), *halves, (RAPID, 5, 0, 50)))
+    k = lines.index("C X-5.0 Y+0.0 DR+ R0")
+    assert lines[k + 1] == "C X+5.0 Y+0.0 DR+ R0"
+
+
 def test_helices_in_a_row_do_not_lead_the_tool_astray():
     # Quarters to and fro whose radii are rounded differently: each leads a little beside, never more than two units of the last decimal.
     blocks, at, z = [(RAPID, 0, 0, 50), (LINE, 0, 0, 0, 300.0)], np.zeros(2), 0.0

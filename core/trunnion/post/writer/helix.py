@@ -24,6 +24,21 @@ def last_of_helix(path: WrittenPath, row: int) -> int:
     return last
 
 
+def last_of_winding(path: WrittenPath, row: int, most: float) -> int:
+    """Return the last row of the arcs about one centre that an arc begins, any parts of turns that climb evenly with their angle, together
+    by `most` rad; an arc that doesn't climb stays by itself."""
+    last, turned = row, [0.0, sweep_of(path, row)]
+    while last + 1 < len(path.motion) and path.dwell[last] == 0.0 and _goes_on(path, last):
+        turned.append(turned[-1] + sweep_of(path, last + 1))
+        height = path.point[row - 1 : last + 2, 2].astype(np.float64)
+        climb = height[-1] - height[0]
+        even = height[0] + np.array(turned) / turned[-1] * climb
+        if turned[-1] > most or climb == 0.0 or (np.abs(height - even) > _SLACK).any():
+            break
+        last += 1
+    return last
+
+
 def block_of(path: WrittenPath, row: int) -> Block:
     """Return one row of a path as `WrittenPath.blocks` yields it."""
     point, centre = path.point[row].tolist(), path.centre[row].tolist()

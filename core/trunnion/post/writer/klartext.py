@@ -21,7 +21,7 @@ from trunnion.post.ticks import TickScale, WrittenCycle, WrittenPath, shortened
 from trunnion.post.words import plain
 from trunnion.post.writer.cycle_calls import CycleCallWriter
 from trunnion.post.writer.feed import dwell_text
-from trunnion.post.writer.helix import block_of, sweep_of
+from trunnion.post.writer.helix import block_of, last_of_winding, sweep_of
 from trunnion.post.writer.modal import Block, WrittenState
 from trunnion.post.writer.program import ProgramWriter
 from trunnion.post.writer.tilted_plane import TiltedPlane
@@ -31,6 +31,8 @@ from trunnion.units import trimmed
 FEEDS_AN_INCH = 10.0
 """In a program in inches feeds are counted in tenths of an inch a minute."""
 
+SLACK = 1e-9
+"""Radians that whole turns add up to more than they are."""
 MOST_OFF = 2.0
 """Ticks: a helix that ends farther beside is followed by a line to its end."""
 
@@ -58,16 +60,18 @@ class KlartextBlockState(WrittenState):
 
     `off` is by how much (x, y), in ticks, the tool is beside where it was to be: an angle of a helix leads it from where it is, with the
     radius that it has there. None where it is on the last decimal: it is brought back there by the next block that says where it ends.
+    `pole` is the centre of the last arc, None after a rapid, before which the plane may have been another.
     """
 
     scale_class = KlartextScale
     off: tuple[float, float] | None = None
+    pole: list[int] | None = None
 
     def rapid(self, words: Iterable[str]) -> str:
         """Return a rapid block of some words: one with a tool axis is `LN`."""
         given = [w for w in words if w]
         word = "LN" if any(w.startswith("TX") for w in given) else "L"
-        self.off = None
+        self.off = self.pole = None
         return " ".join([word, *given, "R0 FMAX"])
 
     def lines(self, block: Block, angle: list[int], minutes: float) -> list[str]:
@@ -90,7 +94,7 @@ class KlartextBlockState(WrittenState):
         if not arc:
             return [" ".join(["LN" if vectors else "L", *parts, "R0", *self.fed(feed, point)])]
         return [
-            self.pole(centre),
+            *self.about(centre),
             " ".join(["C", *parts, _turn(motion), "R0", *self.fed(feed, point)]),
         ]
 
@@ -106,7 +110,7 @@ class KlartextBlockState(WrittenState):
         self.off = self.led_off(block, ticks)
         self.reached(point, self.angle or [], motion)
         fed = self.fed(feed, point)
-        lines = [self.pole(centre), " ".join(["CP", *parts, _turn(motion), "R0", *fed])]
+        lines = [*self.about(centre), " ".join(["CP", *parts, _turn(motion), "R0", *fed])]
         if self.off is not None and math.hypot(*self.off) > MOST_OFF:
             lines += self.lines((point, centre, Motion.LINE, feed), [], 0.0)
         return lines
@@ -122,10 +126,11 @@ class KlartextBlockState(WrittenState):
         x, y = (a + b - m for a, b, m in zip(self.at, self.off or (0.0, 0.0), centre, strict=False))
         return (centre[0] + c * x - s * y - point[0], centre[1] + s * x + c * y - point[1])
 
-    def pole(self, centre: list[int]) -> str:
-        """Return the block of an arc's centre."""
+    def about(self, centre: list[int]) -> list[str]:
+        """Return the block of an arc's centre, none where it is that of the arc before."""
+        before, self.pole = self.pole, centre[:2]
         text = self.scale.text
-        return f"CC X{text(centre[0])} Y{text(centre[1])}"
+        return [] if before == centre[:2] else [f"CC X{text(centre[0])} Y{text(centre[1])}"]
 
     def fed(self, feed: float, point: list[int]) -> list[str]:
         """Return the word of a feed in mm/min where it changes; rapids leave it as it was."""
@@ -232,18 +237,20 @@ class KlartextWriter(ProgramWriter):
         """Return what writes the drilling cycles of a section."""
         return KlartextCycles(self.modal)
 
+    def last_of_arc(self, path: WrittenPath, row: int) -> int:
+        """Return the last of the arcs that are one helix, of as many turns as a block takes."""
+        return last_of_winding(path, row, self.words.turns_a_block * math.tau + SLACK)
+
     def arc(self, path: WrittenPath, row: int, last: int) -> Iterator[str]:
         """Yield the blocks of an arc; of a helix and of a whole circle by the angle, which is never in doubt."""
-        modal = self.modal
+        modal, block = self.modal, block_of(path, last)
         assert isinstance(modal, KlartextBlockState)
-        for first in range(row, last + 1, self.words.turns_a_block):
-            end = min(first + self.words.turns_a_block - 1, last)
-            block = block_of(path, end)
-            start = path.point[first - 1].tolist()
-            if start[2] == block[0][2] and start[:2] != block[0][:2]:
-                yield from modal.lines(block, path.more[end].tolist(), 0.0)
-            else:
-                yield from modal.helix(block, math.tau * (end - first) + sweep_of(path, end))
+        start = path.point[row - 1].tolist()
+        if start[2] == block[0][2] and start[:2] != block[0][:2]:
+            yield from modal.lines(block, path.more[last].tolist(), 0.0)
+        else:
+            turn = sum(sweep_of(path, k) for k in range(row, last + 1))
+            yield from modal.helix(block, turn)
 
     def waited(self, seconds: float, section: ProgramSection) -> Iterator[str]:
         """Yield the blocks that make the tool stand."""

@@ -220,7 +220,7 @@ class ProgramWriter:
                 continue
             yield from map(numbered, cycles.ended())
             if self.words.whole_turns and block[2] >= Motion.ARC_CW and time == 0.0:
-                last = last_of_helix(path, row)
+                last = self.last_of_arc(path, row)
                 yield from map(numbered, self.arc(path, row, last))
                 after, dwell = last + 1, float(path.dwell[last])
             else:
@@ -232,6 +232,10 @@ class ProgramWriter:
     def cycles(self) -> CycleCallWriter | CycleWriter:
         """Return what writes the drilling cycles of a section."""
         return CycleCallWriter(self.modal) if self.words.cycle_calls else CycleWriter(self.modal)
+
+    def last_of_arc(self, path: WrittenPath, row: int) -> int:
+        """Return the last of the rows that are written with an arc."""
+        return last_of_helix(path, row)
 
     def arc(self, path: WrittenPath, row: int, last: int) -> Iterator[str]:
         """Yield the line of an arc, or of a helix that ends at a later row."""
