@@ -1,0 +1,121 @@
+"""What drives the operations on a casing: over bottoms laid flat, and along the directions of bosses and holes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.model.operation import Operation
+from trunnion.model.setup import Setup
+from trunnion.plan.casing.grounds import bottom_of, fine_mesh, ground_under
+from trunnion.plan.contract import DriveNeeds, OperationDrive, RollingGround, Scene
+from trunnion.plan.development.drives import (
+    FLOOR,
+    ROUGH,
+    EarlierCutter,
+    floor_over,
+    layers_over,
+)
+from trunnion.plan.development.ground import DevelopedGround
+from trunnion.plan.freeform.frames import cutting_setup
+from trunnion.plan.freeform.keys import number
+from trunnion.plan.freeform.lands import STOCK, land_drive
+from trunnion.plan.freeform.surface_drives import space_from
+from trunnion.plan.holes.drive import hole_drive
+from trunnion.progress import Progress
+
+ROUGH_CHORD, FINISH_CHORD = 0.02, 0.002
+"""mm: chord errors of circles about the axis while roughing, and while finishing."""
+
+
+def ground_in(scene: Scene, pocket: str, progress: Progress) -> DevelopedGround:
+    """Return the ground of a pocket, made once for all operations of a setup."""
+
+    def made() -> DevelopedGround:
+        part = scene.context.part
+        bottom = bottom_of(scene.recognition, part, pocket)
+        return ground_under(bottom, scene.recognition, part, fine_mesh(part), scene.blank, progress)
+
+    return scene.once(("ground", pocket), made).watched(progress)
+
+
+def plane_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the plane drive of an operation: over a bottom laid flat, or on the top of a boss seen along its normal."""
+    if operation.kind not in (ROUGH, FLOOR):
+        space = space_from(operation.direction, tolerance.CHORD, scene, progress)
+        stock = scene.stock(space.setup)
+        drive = land_drive(operation, space, (), float(stock.heights.max()), progress)
+        return OperationDrive(setup=space.setup, drive=drive, identity=drive)
+    ground = ground_in(scene, operation.feature, progress)
+    before = [EarlierCutter.of(o) for o in earlier_over(operation, scene)]
+    if operation.kind == ROUGH:
+        drive = layers_over(operation, ground, boss_tops(ground), before)
+    else:
+        drive = floor_over(operation, ground, before, number(operation, STOCK))
+    rolling = rolling_on(ground, ROUGH_CHORD if operation.kind == ROUGH else FINISH_CHORD)
+    setup = flat_setup(scene.setup, ground)
+    return OperationDrive(
+        setup=setup, drive=drive, identity=(drive, ground.development), rolling=rolling
+    )
+
+
+def earlier_over(operation: Operation, scene: Scene) -> list[Operation]:
+    """Return the operations of an operation's kind that went over the same bottom before."""
+    found = []
+    for o in scene.process.of_setup(operation.setup):
+        if o.id == operation.id:
+            break
+        if o.kind == operation.kind and o.feature == operation.feature and not o.suppressed:
+            found.append(o)
+    return found
+
+
+def boss_tops(ground: DevelopedGround) -> tuple[float, ...]:
+    """Return the heights over ground from which on each boss on it is clear."""
+    low, high = ground.ends
+    found = []
+    for each in ground.standing:
+        if each.closed and len(each.corners):
+            place = ground.development.places(each.corners.reshape(-1, 3))[0]
+            if low <= float(np.median(place)) <= high:
+                found.append(float(each.corners[:, :, 2].max()))
+    return tuple(sorted(set(found)))
+
+
+def rolling_on(ground: DevelopedGround, chord: float) -> RollingGround:
+    """Return what a path over ground is rolled onto."""
+    low, high = ground.around().box()
+    return RollingGround(
+        development=ground.development,
+        chord=chord,
+        low=np.asarray(low),
+        high=np.asarray(high),
+        profile=ground.profile,
+    )
+
+
+def flat_setup(setup: Setup, ground: DevelopedGround) -> Setup:
+    """Return a setup over the plane of ground laid flat: its tool travels as far over all of blank and part there as over the blank in
+    the setup itself."""
+    above = float(ground.profile[:, 1].max())
+    for each in ground.standing:
+        if len(each.corners):
+            above = max(above, float(each.corners[:, :, 2].max()))
+    return replace(setup, clearance=above + CLEARANCE, fixtures=())
+
+
+CLEARANCE = 10.0
+"""mm that rapids over bottoms stay above everything there."""
+
+
+def holes_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the drive of an operation on holes, seen along the operation's direction."""
+    setup = cutting_setup(scene.setup, operation.direction, scene.blank)
+    drive, findings = hole_drive(operation, scene.recognition, scene.process, setup.frame)
+    return OperationDrive(setup=setup, drive=drive, identity=drive, findings=findings)

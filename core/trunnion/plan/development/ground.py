@@ -1,0 +1,192 @@
+"""Turned ground laid flat, with all of the part that stands on it: where a tool whose axis is the ground's normal may go."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import shapely
+
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.developed_mesh import developed_triangles
+from trunnion.geometry.development import Development
+from trunnion.geometry.mesh import Mesh
+from trunnion.geometry.plane.plan_area import plan_area_above, region_of
+from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
+from trunnion.model.blank import Blank
+from trunnion.model.tool import Tool
+from trunnion.progress import NO_PROGRESS, Progress
+
+AROUND = 45.0
+"""mm beyond the ground and beyond half a turn that are looked at: two diameters of the largest cutter."""
+BELOW = -0.5
+"""mm under the ground from where on the part is looked at."""
+SKIM = 5e-3
+"""mm above a height that what is in a cutter's way begins: the triangles of bent faces are off by as much."""
+GROWN = 1e-3
+"""mm that each triangle is grown before they are joined."""
+STEP = 2.0
+"""mm: heights that shank and holder are kept off the part at go in such steps, always down."""
+CHORD = 0.01
+"""mm: chord error of circles over the plane of a cone."""
+LINES = 400
+"""Places along the straight lines at which the blank's height is taken."""
+TURNS = (0.0, 1.0, 2.7)
+"""rad about the axis at which a blank must look the same to count as round."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class StandingOn:
+    """Faces that stand on ground together: corners (t, 3, 3) over its plane, and whether openings in them are no way down to it."""
+
+    corners: Floats
+    closed: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class DevelopedGround:
+    """Ground between two places (mm) along its straight lines, with what stands on it and around it.
+
+    `profile` (k, 2): the height mm of the blank over the plane at places along the straight lines. `found`: what the part has above heights,
+    each worked out once, with looks at `progress`.
+    """
+
+    development: Development
+    ends: tuple[float, float]
+    standing: tuple[StandingOn, ...]
+    profile: Floats
+    progress: Progress = NO_PROGRESS
+    found: dict[float, Region] = field(repr=False, default_factory=dict)
+
+    @property
+    def least_radius(self) -> float:
+        """The least radius (mm) of the ground."""
+        return float(self.development.radius_at(np.array(self.ends)).min())
+
+    @property
+    def top(self) -> float:
+        """How high the blank is over the ground, mm."""
+        v = self.profile[:, 0]
+        inside = (v >= self.ends[0]) & (v <= self.ends[1])
+        return float(self.profile[inside, 1].max())
+
+    def watched(self, progress: Progress) -> DevelopedGround:
+        """Return the same ground, which looks at another progress."""
+        return replace(self, progress=progress)
+
+    def band(self, low: float, high: float, beyond: float = 0.0) -> Region:
+        """Return the plane's area between two places along the straight lines, once around and `beyond` mm on either side."""
+        half = math.pi + beyond / self.least_radius
+        return sector(self.development, low, high, half)
+
+    def around(self) -> Region:
+        """Return the plane's area of the ground and of what is looked at around it."""
+        return self.band(self.ends[0] - AROUND, self.ends[1] + AROUND, AROUND)
+
+    def blank_over(self, z: float) -> Region:
+        """Return the plane's area of the ground, once around, that the blank is over a height on."""
+        v, high = self.profile.T
+        over = (high > z) & (v >= self.ends[0]) & (v <= self.ends[1])
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], over, [False]]).astype(int)))
+        step = float(v[1] - v[0])
+        return union_all(
+            [
+                self.band(
+                    max(float(v[a]) - step, self.ends[0]), min(float(v[b - 1]) + step, self.ends[1])
+                )
+                for a, b in edges.reshape(-1, 2).tolist()
+            ]
+        )
+
+    def over(self, z: float) -> Region:
+        """Return the plane's area over which the part reaches higher than a height."""
+        if z not in self.found:
+            self.progress.check()
+            self.found[z] = self.progress.aside(
+                lambda _: union_all([_area_over(s, z) for s in self.standing])
+            )
+        return self.found[z]
+
+    def free(self, z: float, tool: Tool, around: float, above: float) -> Region:
+        """Return the area that the envelope of a cutter may be in, its tip at a height: shank and holder keep `around` mm from the part
+        beside and `above` mm over it."""
+        obstacles = [self.over(z + SKIM)]
+        for z0, r0, _, r1 in tool.profile():
+            more = max(r0, r1) - tool.radius
+            height = z + max(SKIM, STEP * math.floor((z0 - above) / STEP))
+            if more > -around:
+                obstacles.append(self.over(height).offset(max(more + around, 0.0)))
+        return self.around().minus(union_all(obstacles))
+
+
+def sector(development: Development, low: float, high: float, half: float) -> Region:
+    """Return the plane's area between two places along the straight lines and two angles (rad) about the axis, left and right of its
+    middle."""
+    if development.half_turn == 0.0:
+        wide = half * development.radius
+        return Region.rectangle(-wide, low, wide, high)
+    count = max(8, math.ceil(half * math.sqrt(development.radius_at(np.array(high)) / CHORD)))
+    turn = np.linspace(-half, half, count)
+    rows = []
+    for v, turns in ((low, turn), (high, turn[::-1])):
+        on = np.column_stack([np.zeros(count), np.full(count, v), np.zeros(count)])
+        radius = development.radius_at(on[:, 1])
+        height = development.frame.to_local(development.to_world(on))[:, 2]
+        rows.append(development.from_cylindrical(radius, turns, height)[:, :2])
+    return region_of(shapely.Polygon(np.vstack(rows)).buffer(0.0))
+
+
+def ground_of(
+    development: Development,
+    ends: tuple[float, float],
+    mesh: Mesh,
+    standing: Sequence[tuple[tuple[int, ...], bool]],
+    blank: Blank,
+    progress: Progress,
+) -> DevelopedGround:
+    """Return ground with what stands on it: sets of faces by their tags, and whether openings in them are no way down."""
+    margin = AROUND / float(development.radius_at(np.array(ends)).min())
+    made = []
+    for tags, closed in progress.each(standing):
+        corners = mesh.points[mesh.triangles[np.isin(mesh.face, tags)]]
+        flat = developed_triangles(corners, development, BELOW, margin)
+        made.append(StandingOn(corners=flat, closed=closed))
+    return DevelopedGround(
+        development=development,
+        ends=ends,
+        standing=tuple(made),
+        profile=blank_profile(development, ends, blank),
+        progress=progress,
+    )
+
+
+def blank_profile(development: Development, ends: tuple[float, float], blank: Blank) -> Floats:
+    """Return places along the straight lines and how high (k, 2) mm the blank is over the plane there; where it is not round about the
+    axis, everywhere as high as it gets."""
+    v = np.linspace(ends[0] - AROUND, ends[1] + AROUND, LINES)
+    seen = [_heights(development, v, blank, turn) for turn in TURNS]
+    if max(float(np.abs(s - seen[0]).max()) for s in seen) > SKIM:
+        shell = development.to_local(blank.frame.to_world(blank.shell()[0]))
+        return np.column_stack([v, np.full(len(v), float(shell[:, 2].max()))])
+    # Between two places the blank is at most as high as at the higher one of their neighbours.
+    near = np.pad(seen[0], 1, mode="edge")
+    return np.column_stack([v, np.maximum(np.maximum(near[:-2], near[2:]), seen[0])])
+
+
+def _heights(development: Development, v: Floats, blank: Blank, turn: float) -> Floats:
+    on = np.column_stack([np.zeros(len(v)), v, np.full(len(v), BELOW)])
+    local = development.frame.to_local(development.to_world(on))
+    flat = development.from_cylindrical(
+        np.hypot(local[:, 0], local[:, 1]), np.full(len(v), turn), local[:, 2]
+    )
+    start, out = development.to_world(flat), development.normals(flat)[0]
+    met = blank.intervals(blank.frame.to_local(start), blank.frame.local_direction(out))
+    ahead = met.clipped(0.0, math.inf)
+    return np.asarray(BELOW + ahead.tops(0.0))
+
+
+def _area_over(standing: StandingOn, z: float) -> Region:
+    area = plan_area_above(standing.corners, z, GROWN)
+    return area.holes_filled() if standing.closed and area else area or EMPTY_REGION
