@@ -13,7 +13,7 @@ from trunnion.geometry.development import Development
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
-from trunnion.plan.casing.bottoms import CasingBottom, casing_bottoms
+from trunnion.plan.casing.bottoms import CasingBottom, casing_bottoms, casing_faces
 from trunnion.plan.development.ground import DevelopedGround, ground_of
 from trunnion.progress import Progress
 from trunnion.recognize.casing.kinds import BOSS, BOTTOM, HOLE, ROOT_FILLET, SIDE, TOP
@@ -88,11 +88,13 @@ def ground_under(
     bosses = [_faces_of(b) for b in found.of_kind(BOSS)]
     apart = {t for tags in bosses for t in tags}
     apart |= {t for f in found.of_kind(HOLE) for t in f.tags}
-    others = tuple(
-        t for t in part.tags if t not in apart and t not in bottom.pocket.with_role(BOTTOM)
-    )
-    standing = [(tags, True) for tags in bosses] + [(others, False)]
-    return ground_of(development, (0.0, length), mesh, standing, blank, progress)
+    own = set(bottom.pocket.with_role(BOTTOM))
+    faces = casing_faces(found, part.graph())
+    others = [t for t in part.tags if t not in apart and t not in own]
+    rings = tuple(t for t in others if faces.turned[t - 1] and faces.runs_round(t - 1))
+    rest = tuple(t for t in others if t not in rings)
+    standing = [(tags, True) for tags in bosses] + [(rest, False)]
+    return ground_of(development, (0.0, length), mesh, standing, rings, blank, progress)
 
 
 def _faces_of(boss: Feature) -> tuple[int, ...]:

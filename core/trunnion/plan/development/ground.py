@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import shapely
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.developed_mesh import developed_triangles
 from trunnion.geometry.development import Development
@@ -29,6 +30,8 @@ GROWN = 1e-3
 """mm that each triangle is grown before they are joined."""
 STEP = 2.0
 """mm: heights that shank and holder are kept off the part at go in such steps, always down."""
+LAP, ROUNDED = 2e-3, 6
+"""mm by which bands lap over what makes them, and decimals of mm of their pieces."""
 CHORD = 0.01
 """mm: chord error of circles over the plane of a cone."""
 LINES = 400
@@ -49,13 +52,14 @@ class StandingOn:
 class DevelopedGround:
     """Ground between two places (mm) along its straight lines, with what stands on it and around it.
 
-    `profile` (k, 2): the height mm of the blank over the plane at places along the straight lines. `found`: what the part has above heights,
+    `rings` (k, 4): pieces of the meridians of what runs round, each from a place and a height to another one. `profile` (k, 2): the height mm of the blank over the plane at places along the straight lines. `found`: what the part has above heights,
     each worked out once, with looks at `progress`.
     """
 
     development: Development
     ends: tuple[float, float]
     standing: tuple[StandingOn, ...]
+    rings: Floats
     profile: Floats
     progress: Progress = NO_PROGRESS
     found: dict[float, Region] = field(repr=False, default_factory=dict)
@@ -105,9 +109,33 @@ class DevelopedGround:
         if z not in self.found:
             self.progress.check()
             self.found[z] = self.progress.aside(
-                lambda _: union_all([_area_over(s, z) for s in self.standing])
+                lambda _: union_all(
+                    [*self._rings_over(z), *(_area_over(s, z) for s in self.standing)]
+                )
             )
         return self.found[z]
+
+    def _rings_over(self, z: float) -> list[Region]:
+        """Return the bands over which what runs round reaches higher than a height."""
+        v0, h0, v1, h1 = self.rings[np.maximum(self.rings[:, 1], self.rings[:, 3]) > z].T
+        rise = np.where(h1 != h0, h1 - h0, 1.0)
+        at = v0 + (v1 - v0) * np.clip((z - h0) / rise, 0.0, 1.0)
+        start, end = np.where(h0 > z, v0, at), np.where(h1 > z, v1, at)
+        low, high = np.minimum(start, end), np.maximum(start, end)
+        order = np.argsort(low, kind="stable")
+        bands: list[tuple[float, float]] = []
+        for a, b in zip(low[order].tolist(), high[order].tolist(), strict=True):
+            if bands and a <= bands[-1][1] + LAP:
+                bands[-1] = (bands[-1][0], max(bands[-1][1], b))
+            else:
+                bands.append((a, b))
+        inside = [
+            (max(a, self.ends[0] - 2.0 * AROUND), min(b, self.ends[1] + 2.0 * AROUND))
+            for a, b in bands
+        ]
+        return [
+            self.band(a - LAP, b + LAP, 2.0 * AROUND) for a, b in inside if b > a - tolerance.SEW
+        ]
 
     def free(self, z: float, tool: Tool, around: float, above: float) -> Region:
         """Return the area that the envelope of a cutter may be in, its tip at a height: shank and holder keep `around` mm from the part
@@ -143,10 +171,12 @@ def ground_of(
     ends: tuple[float, float],
     mesh: Mesh,
     standing: Sequence[tuple[tuple[int, ...], bool]],
+    rings: tuple[int, ...],
     blank: Blank,
     progress: Progress,
 ) -> DevelopedGround:
-    """Return ground with what stands on it: sets of faces by their tags, and whether openings in them are no way down."""
+    """Return ground with what stands on it: sets of faces by their tags, and whether openings in them are no way down; `rings` are faces of
+    revolution that run round."""
     margin = AROUND / float(development.radius_at(np.array(ends)).min())
     made = []
     for tags, closed in progress.each(standing):
@@ -157,9 +187,21 @@ def ground_of(
         development=development,
         ends=ends,
         standing=tuple(made),
+        rings=_meridians(development, mesh, rings),
         profile=blank_profile(development, ends, blank),
         progress=progress,
     )
+
+
+def _meridians(development: Development, mesh: Mesh, tags: tuple[int, ...]) -> Floats:
+    """Return the edges of faces that run round as pieces (k, 4) over the straight lines, each once."""
+    triangles = mesh.triangles[np.isin(mesh.face, tags)]
+    flat = development.to_local(mesh.points)
+    place = development.places(flat)[0]
+    at = np.column_stack([place, flat[:, 2]]).round(ROUNDED)
+    edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    pieces = np.hstack([at[edges[:, 0]], at[edges[:, 1]]])
+    return np.unique(pieces[np.maximum(pieces[:, 1], pieces[:, 3]) > BELOW], axis=0)
 
 
 def blank_profile(development: Development, ends: tuple[float, float], blank: Blank) -> Floats:
