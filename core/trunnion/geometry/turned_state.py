@@ -9,12 +9,15 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+import shapely
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.tolerance import COINCIDENT
+from trunnion.tolerance import CHORD, COINCIDENT
 
 STEP = 2.0
 """mm between heights where what is no face of revolution is looked at: a boss stands free of its envelope by no more along the axis."""
+EVEN = 1.0
+"""mm that the rings which stand for bosses may be wider than what turning could leave."""
 DECIMALS = 6
 """Decimals of a height in mm to which points of a face are at one height."""
 
@@ -56,7 +59,7 @@ def _meridian(points: Floats, is_straight: bool) -> Floats:
 def _levels(exact: Floats, low: float, high: float) -> Floats:
     """Return heights from low to high: the ends of the exact pieces, and steps between them."""
     ends = np.unique(np.concatenate([[low, high], exact[:, 0], exact[:, 1]]))
-    ends = ends[np.concatenate([[True], np.diff(ends) > COINCIDENT])]
+    ends = ends[np.diff(ends, prepend=-np.inf) > COINCIDENT]
     found = [
         np.linspace(a, b, max(2, int(np.ceil((b - a) / STEP)) + 1))[:-1] for a, b in pairwise(ends)
     ]
@@ -69,12 +72,24 @@ def _limits(exact: Floats, others: Floats, level: Floats) -> tuple[Floats, Float
     before = outer.copy()
     for k in range(3):
         _take_edges(others[:, k], others[:, (k + 1) % 3], level, outer, inner)
-    # What stands out of the round faces in neighbouring spans has one radius at the height between them: an even ring.
-    proud = (outer > before + COINCIDENT).all(axis=1)
-    joined = np.flatnonzero(proud[:-1] & proud[1:])
-    most = np.maximum(outer[joined, 1], outer[joined + 1, 0])
-    outer[joined, 1] = outer[joined + 1, 0] = most
+    proud = np.asarray((outer > before + COINCIDENT).all(axis=1))
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], proud, [False]]).astype(np.int64)))
+    for first, last in edges.reshape(-1, 2).tolist():
+        outer[first:last] = _evened(outer[first:last], level[first : last + 1])
     return outer, np.where(np.isfinite(inner), inner, 0.0)
+
+
+def _evened(radius: Floats, level: Floats) -> Floats:
+    """Return the limits (k, 2) of spans that stand out of the round faces as those of an even ring of few straight pieces, nowhere inside:
+    a shop turns no more of a ring than it needs to."""
+    most = np.concatenate(
+        [radius[:1, 0], np.maximum(radius[:-1, 1], radius[1:, 0]), radius[-1:, 1]]
+    )
+    line = shapely.simplify(shapely.linestrings(np.column_stack([level, most])), EVEN)
+    z, r = np.asarray(line.coords).T
+    even = np.interp(level, z, r)
+    even += max(0.0, float((most - even).max()))
+    return np.column_stack([even[:-1], even[1:]])
 
 
 def _exact_limits(exact: Floats, level: Floats) -> tuple[Floats, Floats]:
@@ -100,6 +115,8 @@ def _take_edges(a: Floats, b: Floats, level: Floats, outer: Floats, inner: Float
     step = (b - a)[:, :2]
     share = -(a[:, :2] * step).sum(axis=1) / np.maximum((step * step).sum(axis=1), COINCIDENT**2)
     least = np.linalg.norm(a[:, :2] + np.clip(share, 0.0, 1.0)[:, None] * step, axis=1)
+    # An edge between points of a bore dips inside of it by the mesh's chord error, the part doesn't.
+    least = np.minimum(least + CHORD, np.minimum(r0, r1))
     first = np.clip(np.searchsorted(level, a[:, 2], side="right") - 1, 0, len(outer) - 1)
     last = np.clip(np.searchsorted(level, b[:, 2], side="left") - 1, first, len(outer) - 1)
     size = last - first + 1

@@ -26,6 +26,8 @@ LAYERS, REST_LAYERS, BOTTOM_CUTTER, FOOT = "layers", "rest_layers", "bottom", "f
 """Words that a typical plan may give for the cutter of a stage on bottoms."""
 BESIDE = 0.5
 """mm that shank and holder keep from the part, beside the cutter's own allowance."""
+CORNER = 0.5
+"""mm: the corner radius that roughing cutters last longest with and leave little at feet."""
 SMALLEST = 4.0
 """mm: smaller end mills rough nothing."""
 WORTH = 0.004
@@ -168,18 +170,21 @@ def _rough_candidates(state: CasingPlanState, ground: DevelopedGround) -> list[T
         and t.diameter <= state.route.largest
         and depth_reached(t) >= deep
     ]
-    return sorted(
-        fits, key=lambda t: (-t.diameter, depth_reached(t), abs(t.corner_radius - 0.5), t.name)
-    )
+    fits.sort(key=lambda t: (-t.diameter, depth_reached(t), abs(t.corner_radius - CORNER), t.name))
+    return _one_a_size(fits)
+
+
+def _one_a_size(tools: Sequence[Tool]) -> list[Tool]:
+    """Return the first of the tools of each diameter."""
+    found: dict[float, Tool] = {}
+    for tool in tools:
+        found.setdefault(tool.diameter, tool)
+    return list(found.values())
 
 
 def _rougher(state: CasingPlanState, ground: DevelopedGround, ring: Region) -> Tool | None:
     tools = _rough_candidates(state, ground)
-    seen: set[float] = set()
     for tool in tools:
-        if tool.diameter in seen:
-            continue
-        seen.add(tool.diameter)
         if _roughed(state, ground, tool, ring).area >= state.settings.share * ring.area:
             return tool
     return tools[-1] if tools else None
@@ -197,19 +202,13 @@ def _roughed(state: CasingPlanState, ground: DevelopedGround, tool: Tool, ring: 
 
 def _finisher(state: CasingPlanState, ground: DevelopedGround, ring: Region) -> Tool | None:
     deep = ground.top + state.route.reach_clearance
-    tools = sorted(
-        (
-            t
-            for t in state.cutters("finish")
-            if t.form == "flat" and t.diameter <= state.route.largest and depth_reached(t) >= deep
-        ),
-        key=lambda t: (-t.diameter, depth_reached(t), t.name),
-    )
-    seen: set[float] = set()
+    fits = [
+        t
+        for t in state.cutters("finish")
+        if t.form == "flat" and t.diameter <= state.route.largest and depth_reached(t) >= deep
+    ]
+    tools = _one_a_size(sorted(fits, key=lambda t: (-t.diameter, depth_reached(t), t.name)))
     for tool in tools:
-        if tool.diameter in seen:
-            continue
-        seen.add(tool.diameter)
         axis_region = ground.free(0.0, tool, BESIDE, state.route.reach_clearance).offset(
             -tool.radius
         )

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from trunnion.findings import Finding
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
@@ -21,7 +21,7 @@ from trunnion.plan.development.ground import DevelopedGround
 from trunnion.plan.freeform.frames import UPRIGHT, Direction
 from trunnion.plan.settings import RouteSettings
 from trunnion.progress import Progress
-from trunnion.settings import Value, choose
+from trunnion.settings import Value
 from trunnion.shop import Shop, Stage
 
 
@@ -50,7 +50,7 @@ class CasingPlanState:
         """Return the catalogue's cutters for a use and the blank's material."""
         return list(self.shop.tools_for(self.material.iso_group, use))
 
-    def direction(self, out: Sequence[float]) -> Direction:
+    def direction(self, out: Floats) -> Direction:
         """Return a direction of the part's coordinates in the setup's frame, upright where it is by less than what parallel means."""
         local = self.setup.frame.local_direction(out)
         x, y, z = (float(v) for v in local)
@@ -92,10 +92,6 @@ class CasingPlanState:
                 others=others,
             )
         )
-
-    def cutting_settings(self) -> CuttingSettings:
-        """Return the limits that cutting data keep."""
-        return choose(CuttingSettings, {})
 
 
 NEARLY = 1e-9

@@ -52,8 +52,9 @@ class StandingOn:
 class DevelopedGround:
     """Ground between two places (mm) along its straight lines, with what stands on it and around it.
 
-    `rings` (k, 4): pieces of the meridians of what runs round, each from a place and a height to another one. `profile` (k, 2): the height mm of the blank over the plane at places along the straight lines. `found`: what the part has above heights,
-    each worked out once, with looks at `progress`.
+    `rings` (k, 4): pieces of the meridians of what runs round, each from a place and a height to another one. `profile` (k, 2): the height
+    mm of the blank over the plane at places along the straight lines. `found`: what the part has above heights, each worked out once, with
+    looks at `progress`.
     """
 
     development: Development
