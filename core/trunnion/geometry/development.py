@@ -69,7 +69,7 @@ class Development:
     def to_world(self, flat: Floats) -> Floats:
         """Return points (..., 3) in the part's coordinates of u, v, h."""
         across, along = self._along
-        y, turn = self.places(flat)
+        y, turn = self.along_and_turn(flat)
         radius = self.radius + y * across + flat[..., 2] * along
         height = self.height + y * along - flat[..., 2] * across
         turn = turn + self.middle
@@ -80,7 +80,7 @@ class Development:
     def normals(self, flat: Floats) -> Floats:
         """Return the unit normals (..., 3) out of the surface, in the part's coordinates, over u, v, h."""
         across, along = self._along
-        turn = self.places(flat)[1] + self.middle
+        turn = self.along_and_turn(flat)[1] + self.middle
         level = np.full(turn.shape, -across)
         return self.frame.world_direction(
             np.stack([along * np.cos(turn), along * np.sin(turn), level], axis=-1)
@@ -88,9 +88,9 @@ class Development:
 
     def turns(self, flat: Floats) -> Floats:
         """Return the angles (...,) rad about the axis, from the plane's middle, of u, v, h."""
-        return self.places(flat)[1]
+        return self.along_and_turn(flat)[1]
 
-    def places(self, flat: Floats) -> tuple[Floats, Floats]:
+    def along_and_turn(self, flat: Floats) -> tuple[Floats, Floats]:
         """Return the places (...,) mm along the straight lines and the angles (...,) rad from the plane's middle of u, v, h."""
         across, _ = self._along
         u, v = flat[..., 0], flat[..., 1]

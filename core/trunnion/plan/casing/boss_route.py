@@ -55,7 +55,7 @@ def plan_boss(state: CasingPlanState, stage: Stage, boss: Feature) -> None:
     tops = boss.with_role(TOP)
     if ground is None or not tops:
         if stage.cutter == TOP_CUTTER:
-            state.findings.append(_left_out(boss))
+            state.findings.append(_not_planned(boss))
         return
     if stage.cutter == TOP_CUTTER:
         _plan_top(state, stage, boss, ground)
@@ -251,7 +251,7 @@ def _size(boss: Feature, name: str) -> float:
     return float(value) if isinstance(value, (int, float)) else 0.0
 
 
-def _left_out(boss: Feature) -> Finding:
+def _not_planned(boss: Feature) -> Finding:
     return warning(
         "route.not-planned",
         f"{boss.id}: it stands on no bottom that is milled all round from outside",

@@ -11,7 +11,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.casing.grounds import bottom_of, ground_under
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.cutting.milling import roughing_depth, roughing_width
-from trunnion.plan.development.drives import EarlierCutter, remaining_on, ring_of, tangent_reach
+from trunnion.plan.development.drives import GroundCutter, remaining_on, ring_of, tangent_reach
 from trunnion.plan.development.ground import DevelopedGround
 from trunnion.plan.freeform.cutters.choice import named
 from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL, STOCK
@@ -54,7 +54,7 @@ def plan_grounds(state: CasingPlanState) -> None:
                 bottom, state.recognition, state.part, state.mesh, state.blank, progress
             )
         except Refused as reason:
-            state.findings.append(_left_out(pocket, str(reason)))
+            state.findings.append(_not_planned(pocket, str(reason)))
             continue
         if ring_of(ground):
             state.grounds[pocket.id] = ground.watched(state.progress)
@@ -92,9 +92,7 @@ def plan_floor(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
     ground = state.grounds[pocket.id]
     ring = ring_of(ground).minus(ground.over(LEAST))
     before = [
-        EarlierCutter.of(o)
-        for o in state.operations
-        if o.feature == pocket.id and o.kind == "floor"
+        GroundCutter.of(o) for o in state.operations if o.feature == pocket.id and o.kind == "floor"
     ]
     reach = tangent_reach(ground)
     if stage.cutter == BOTTOM_CUTTER:
@@ -228,7 +226,7 @@ def _foot_cutter(state: CasingPlanState, ground: DevelopedGround, reach: float) 
     return max(pool, key=lambda t: (t.diameter, -depth_reached(t), t.name), default=None)
 
 
-def _left_out(pocket: Feature, reason: str) -> Finding:
+def _not_planned(pocket: Feature, reason: str) -> Finding:
     return warning(
         "route.not-planned",
         reason,

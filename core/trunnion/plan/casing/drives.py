@@ -14,7 +14,7 @@ from trunnion.plan.contract import DriveNeeds, OperationDrive, RollingGround, Sc
 from trunnion.plan.development.drives import (
     FLOOR,
     ROUGH,
-    EarlierCutter,
+    GroundCutter,
     floor_over,
     layers_over,
 )
@@ -51,7 +51,7 @@ def plane_driven(
         drive = land_drive(operation, space, (), float(stock.heights.max()), progress)
         return OperationDrive(setup=space.setup, drive=drive, identity=drive)
     ground = ground_in(scene, operation.feature, progress)
-    before = [EarlierCutter.of(o) for o in earlier_over(operation, scene)]
+    before = [GroundCutter.of(o) for o in earlier_over(operation, scene)]
     if operation.kind == ROUGH:
         drive = layers_over(operation, ground, boss_tops(ground), before)
     else:
@@ -78,10 +78,10 @@ def boss_tops(ground: DevelopedGround) -> tuple[float, ...]:
     """Return the heights over ground from which on each boss on it is clear."""
     low, high = ground.ends
     found = []
-    for each in ground.standing:
+    for each in ground.obstacles:
         if each.closed and len(each.corners):
-            place = ground.development.places(each.corners.reshape(-1, 3))[0]
-            if low <= float(np.median(place)) <= high:
+            along = ground.development.along_and_turn(each.corners.reshape(-1, 3))[0]
+            if low <= float(np.median(along)) <= high:
                 found.append(float(each.corners[:, :, 2].max()))
     return tuple(sorted(set(found)))
 
@@ -102,7 +102,7 @@ def flat_setup(setup: Setup, ground: DevelopedGround) -> Setup:
     """Return a setup over the plane of ground laid flat: its tool travels as far over all of blank and part there as over the blank in
     the setup itself."""
     above = float(ground.profile[:, 1].max())
-    for each in ground.standing:
+    for each in ground.obstacles:
         if len(each.corners):
             above = max(above, float(each.corners[:, :, 2].max()))
     return replace(setup, clearance=above + CLEARANCE, fixtures=())

@@ -93,8 +93,8 @@ def ground_under(
     others = [t for t in part.tags if t not in apart and t not in own]
     rings = tuple(t for t in others if faces.turned[t - 1] and faces.runs_round(t - 1))
     rest = tuple(t for t in others if t not in rings)
-    standing = [(tags, True) for tags in bosses] + [(rest, False)]
-    return ground_of(development, (0.0, length), mesh, standing, rings, blank, progress)
+    obstacles = [(tags, True) for tags in bosses] + [(rest, False)]
+    return ground_of(development, (0.0, length), mesh, obstacles, rings, blank, progress)
 
 
 def _faces_of(boss: Feature) -> tuple[int, ...]:

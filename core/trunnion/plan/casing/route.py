@@ -103,10 +103,14 @@ def _add_turned(state: CasingPlanState) -> None:
             remedy="turn the part to the blank's outline before it is milled",
         )
     )
-    told = {w for f in state.findings for w in f.where}
+    reported = {w for f in state.findings for w in f.where}
     for feature in state.recognition:
         open_tags = set(feature.tags) - cut
-        if feature.kind == POCKET and feature.id not in state.grounds and feature.id not in told:
+        if (
+            feature.kind == POCKET
+            and feature.id not in state.grounds
+            and feature.id not in reported
+        ):
             state.findings.append(
                 warning(
                     "route.not-planned",

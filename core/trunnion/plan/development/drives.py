@@ -35,7 +35,7 @@ BESIDE = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EarlierCutter:
+class GroundCutter:
     """A cutter that went over the same ground before: what it kept from walls (mm), and around and above shank and holder."""
 
     tool: Tool
@@ -44,9 +44,9 @@ class EarlierCutter:
     above: float
 
     @staticmethod
-    def of(operation: Operation) -> EarlierCutter:
+    def of(operation: Operation) -> GroundCutter:
         """Return the cutter of an operation."""
-        return EarlierCutter(
+        return GroundCutter(
             tool=operation.cutter,
             allowance=number(operation, WALL_ALLOWANCE),
             around=number(operation, AROUND_TOOL),
@@ -86,12 +86,12 @@ def layers_over(
     operation: Operation,
     ground: DevelopedGround,
     tops: Sequence[float],
-    before: Sequence[EarlierCutter],
+    before: Sequence[GroundCutter],
 ) -> PlaneDrive:
     """Return layers from the blank down to the ground's allowance, without what earlier cutters cleared; `tops` are heights (mm) over the
     ground from which on bosses are clear."""
     floor, wall = number(operation, FLOOR_ALLOWANCE), number(operation, WALL_ALLOWANCE)
-    mine = EarlierCutter.of(operation)
+    mine = GroundCutter.of(operation)
     levels, above = [], ground.top
     for z in layer_heights(ground.top, floor, operation.data.depth, tops, floor):
         boundary = _free(ground, z - floor, mine)
@@ -120,10 +120,10 @@ def layers_over(
 
 
 def floor_over(
-    operation: Operation, ground: DevelopedGround, before: Sequence[EarlierCutter], stock: float
+    operation: Operation, ground: DevelopedGround, before: Sequence[GroundCutter], stock: float
 ) -> PlaneDrive:
     """Return the ground as a floor on which `stock` mm stand, without what earlier cutters finished."""
-    mine = EarlierCutter.of(operation)
+    mine = GroundCutter.of(operation)
     boundary = _free(ground, 0.0, mine)
     wanted = remaining_on(ground, ring_of(ground).minus(ground.over(SKIMMED)), before)
     face = operation.faces[0] if operation.faces else 0
@@ -141,9 +141,7 @@ SKIMMED = 5e-3
 """mm over the ground from which on what stands there is no ground any more."""
 
 
-def remaining_on(
-    ground: DevelopedGround, wanted: Region, before: Sequence[EarlierCutter]
-) -> Region:
+def remaining_on(ground: DevelopedGround, wanted: Region, before: Sequence[GroundCutter]) -> Region:
     """Return what cutters leave of ground: what their discs stay off, beside things that stand there, counts as left."""
     reach = tangent_reach(ground)
     for earlier in before:
@@ -154,5 +152,5 @@ def remaining_on(
     return wanted
 
 
-def _free(ground: DevelopedGround, z: float, cutter: EarlierCutter) -> Region:
+def _free(ground: DevelopedGround, z: float, cutter: GroundCutter) -> Region:
     return ground.free(z, cutter.tool, cutter.around, cutter.above)

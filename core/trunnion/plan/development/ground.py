@@ -41,7 +41,7 @@ TURNS = (0.0, 1.0, 2.7)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class StandingOn:
+class GroundObstacle:
     """Faces that stand on ground together: corners (t, 3, 3) over its plane, and whether openings in them are no way down to it."""
 
     corners: Floats
@@ -59,7 +59,7 @@ class DevelopedGround:
 
     development: Development
     ends: tuple[float, float]
-    standing: tuple[StandingOn, ...]
+    obstacles: tuple[GroundObstacle, ...]
     rings: Floats
     profile: Floats
     progress: Progress = NO_PROGRESS
@@ -111,7 +111,7 @@ class DevelopedGround:
             self.progress.check()
             self.found[z] = self.progress.aside(
                 lambda _: union_all(
-                    [*self._rings_over(z), *(_area_over(s, z) for s in self.standing)]
+                    [*self._rings_over(z), *(_area_over(s, z) for s in self.obstacles)]
                 )
             )
         return self.found[z]
@@ -171,7 +171,7 @@ def ground_of(
     development: Development,
     ends: tuple[float, float],
     mesh: Mesh,
-    standing: Sequence[tuple[tuple[int, ...], bool]],
+    obstacles: Sequence[tuple[tuple[int, ...], bool]],
     rings: tuple[int, ...],
     blank: Blank,
     progress: Progress,
@@ -180,14 +180,14 @@ def ground_of(
     revolution that run round."""
     margin = AROUND / float(development.radius_at(np.array(ends)).min())
     made = []
-    for tags, closed in progress.each(standing):
+    for tags, closed in progress.each(obstacles):
         corners = mesh.points[mesh.triangles[np.isin(mesh.face, tags)]]
         flat = developed_triangles(corners, development, BELOW, margin)
-        made.append(StandingOn(corners=flat, closed=closed))
+        made.append(GroundObstacle(corners=flat, closed=closed))
     return DevelopedGround(
         development=development,
         ends=ends,
-        standing=tuple(made),
+        obstacles=tuple(made),
         rings=_meridians(development, mesh, rings),
         profile=blank_profile(development, ends, blank),
         progress=progress,
@@ -198,8 +198,8 @@ def _meridians(development: Development, mesh: Mesh, tags: tuple[int, ...]) -> F
     """Return the edges of faces that run round as pieces (k, 4) over the straight lines, each once."""
     triangles = mesh.triangles[np.isin(mesh.face, tags)]
     flat = development.to_local(mesh.points)
-    place = development.places(flat)[0]
-    at = np.column_stack([place, flat[:, 2]]).round(ROUNDED)
+    along = development.along_and_turn(flat)[0]
+    at = np.column_stack([along, flat[:, 2]]).round(ROUNDED)
     edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     pieces = np.hstack([at[edges[:, 0]], at[edges[:, 1]]])
     return np.unique(pieces[np.maximum(pieces[:, 1], pieces[:, 3]) > BELOW], axis=0)
@@ -230,6 +230,6 @@ def _heights(development: Development, v: Floats, blank: Blank, turn: float) -> 
     return np.asarray(BELOW + ahead.tops(0.0))
 
 
-def _area_over(standing: StandingOn, z: float) -> Region:
-    area = plan_area_above(standing.corners, z, GROWN)
-    return area.holes_filled() if standing.closed and area else area or EMPTY_REGION
+def _area_over(obstacle: GroundObstacle, z: float) -> Region:
+    area = plan_area_above(obstacle.corners, z, GROWN)
+    return area.holes_filled() if obstacle.closed and area else area or EMPTY_REGION

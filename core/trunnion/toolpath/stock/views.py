@@ -165,11 +165,11 @@ def _over(ground: RollingGround) -> PlanningStock:
     shape = tuple(np.ceil(size / cell).astype(int))
     rows = np.argwhere(np.ones(shape, dtype=bool))
     middle = np.column_stack([ground.low + (rows + 0.5) * cell, np.zeros(len(rows))])
-    place = ground.development.places(middle)[0]
+    along = ground.development.along_and_turn(middle)[0]
     v, high = ground.profile.T
     spread = max(1, math.ceil(cell / float(v[1] - v[0])))
     highest = maximum_filter(high, 2 * spread + 1, mode="nearest")
-    row = np.clip(np.round((place - v[0]) / (v[1] - v[0])).astype(np.int64), 0, len(v) - 1)
+    row = np.clip(np.round((along - v[0]) / (v[1] - v[0])).astype(np.int64), 0, len(v) - 1)
     heights = highest[row].reshape(shape)
     return PlanningStock(
         heights=_fixed(heights),
