@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.development import Development
 
-CHORD = 5e-3
-"""mm: how far an edge that is straight in space may be from its straight stand-in over the plane."""
+CHORD = 8e-3
+"""mm: how far an edge that is straight in space may be from its straight stand-in over the plane; more than meshes of bent faces are off."""
 HALVINGS = 8
 """Times that triangles are cut in four: of an edge of 1 m pieces of 4 mm are left."""
 
@@ -55,12 +55,11 @@ def _laid(corners: Floats, development: Development) -> tuple[Floats, Floats]:
     return development.from_cylindrical(radius, turn, local[..., 2]), turn
 
 
-def _bends(turn: Floats, flat: Floats, development: Development) -> np.ndarray:
+def _bends(turn: Floats, flat: Floats, development: Development) -> Bools:
     """Return which triangles have an edge that leaves its straight stand-in by more than the chord error: r t^2 / 8 for an angle t."""
     wide = np.ptp(turn, axis=1)
     radius = development.radius_at(flat[:, :, 1]).max(axis=1) + flat[:, :, 2].max(axis=1)
-    on_ground = np.ptp(flat[:, :, 2], axis=1) < CHORD
-    return (radius * wide**2 / 8.0 > CHORD) & ~on_ground
+    return np.asarray(radius * wide**2 / 8.0 > CHORD)
 
 
 def _quartered(corners: Floats) -> Floats:
