@@ -18,7 +18,7 @@ import pytest
 import samples
 from own_packages import names, with_own_packages
 from round_parts import wheel
-from seeded.casings import small_casing
+from seeded.casings import short_ring
 from shaped_parts import bowl
 from trunnion import registry
 from trunnion.findings import BadInput, Cancelled
@@ -41,7 +41,7 @@ def engines() -> dict[str, tuple[Engine, Session]]:
     for name, file, machine in (
         ("pockets", samples.written(samples.two_pockets_and_a_rib_shape()), ""),
         ("bowl", samples.written(bowl(20.0, 16.0, 8.0, 6.0).shape, name="bowl"), ""),
-        ("shell", samples.written(small_casing(), name="shell-with-bosses"), "Trunnion 650"),
+        ("shell", samples.written(short_ring(), name="shell-with-bosses"), "Trunnion 650"),
         ("wheel", samples.written(wheel(1).shape, name="wheel"), ""),
     ):
         found[name] = _recognized(file, machine)

@@ -8,7 +8,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.development import Development
 
 CHORD = 8e-3
-"""mm: how far an edge that is straight in space may be from its straight stand-in over the plane; more than meshes of bent faces are off."""
+"""mm: how far an edge that is straight in space may be from its straight stand-in over the plane; more than bent faces' meshes are off."""
 HALVINGS = 8
 """Times that triangles are cut in four: of an edge of 1 m pieces of 4 mm are left."""
 

@@ -15,7 +15,7 @@ from trunnion.geometry.developed_mesh import developed_triangles
 from trunnion.geometry.development import Development
 from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.plane.plan_area import plan_area_above, region_of
-from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
+from trunnion.geometry.plane.region import Region, union_all
 from trunnion.model.blank import Blank
 from trunnion.model.tool import Tool
 from trunnion.progress import NO_PROGRESS, Progress
@@ -46,6 +46,20 @@ class GroundObstacle:
 
     corners: Floats
     closed: bool
+    _upper: list[Region] = field(init=False, repr=False, default_factory=list)
+
+    def over(self, z: float) -> Region:
+        """Return the plane's area over which they reach higher than a height."""
+        middle = 0.5 * float(self.corners[:, :, 2].max(initial=0.0))
+        upper = self.corners[:, :, 2].min(axis=1) >= middle
+        if z >= middle or not upper.any():
+            area = plan_area_above(self.corners, z, GROWN)
+        else:
+            # What is wholly in the upper half is over every lower height: its area is worked out once.
+            if not self._upper:
+                self._upper.append(plan_area_above(self.corners[upper], middle, GROWN))
+            area = self._upper[0].union(plan_area_above(self.corners[~upper], z, GROWN))
+        return area.holes_filled() if self.closed and area else area
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -111,7 +125,7 @@ class DevelopedGround:
             self.progress.check()
             self.found[z] = self.progress.aside(
                 lambda _: union_all(
-                    [*self._rings_over(z), *(_area_over(s, z) for s in self.obstacles)]
+                    [*self._rings_over(z), *(each.over(z) for each in self.obstacles)]
                 )
             )
         return self.found[z]
@@ -228,8 +242,3 @@ def _heights(development: Development, v: Floats, blank: Blank, turn: float) -> 
     met = blank.intervals(blank.frame.to_local(start), blank.frame.local_direction(out))
     ahead = met.clipped(0.0, math.inf)
     return np.asarray(BELOW + ahead.tops(0.0))
-
-
-def _area_over(obstacle: GroundObstacle, z: float) -> Region:
-    area = plan_area_above(obstacle.corners, z, GROWN)
-    return area.holes_filled() if obstacle.closed and area else area or EMPTY_REGION

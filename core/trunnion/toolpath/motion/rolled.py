@@ -26,7 +26,7 @@ def rolled(path: Toolpath, development: Development, frame: Frame, chord: float)
     Raises `Refused` for drilling cycles: a hole has an axis of its own.
     """
     if path.cycles:
-        raise Refused("holes are not drilled over a development: give each its own direction")
+        raise Refused("holes are not drilled over a development; give each its own direction")
     if not len(path):
         return path
     start = path.starts()
