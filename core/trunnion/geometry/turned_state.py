@@ -86,7 +86,7 @@ def _evened(radius: Floats, level: Floats) -> Floats:
         [radius[:1, 0], np.maximum(radius[:-1, 1], radius[1:, 0]), radius[-1:, 1]]
     )
     line = shapely.simplify(shapely.linestrings(np.column_stack([level, most])), EVEN)
-    z, r = np.asarray(line.coords).T
+    z, r = shapely.get_coordinates(line).T
     even = np.interp(level, z, r)
     even += max(0.0, float((most - even).max()))
     return np.column_stack([even[:-1], even[1:]])

@@ -113,7 +113,9 @@ def _make_one(
     try:
         driven = planner.drive(operation, needs, scene, progress.part(0.0, DRIVEN))
         setup, drive, rolling = driven.setup, driven.drive, driven.rolling
-        stock = scene.sides.over_ground(rolling) if rolling else scene.stock(setup)
+        stock = (
+            scene.sides.over_ground(rolling) if rolling else scene.sides.seen(setup, driven.cell)
+        )
         before = scene.before(cutter)
         key = digest(
             operation.strategy,

@@ -149,7 +149,8 @@ class OperationDrive:
     """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `identity`, what a digest is made of that tells
     the drive from others: the drive itself, or its digest, with all else that its queries depend on. `findings` say what was cut off it.
 
-    A drive over a `rolling` ground lies in the plane of its development instead, and so does the path until it is rolled onto it.
+    A drive over a `rolling` ground lies in the plane of its development instead, and so does the path until it is rolled onto it. `cell`:
+    side (mm) of the cells that the stock is known in, where it need not be as fine as usual (0).
     """
 
     setup: Setup
@@ -157,6 +158,7 @@ class OperationDrive:
     identity: Any
     findings: tuple[Finding, ...] = ()
     rolling: RollingGround | None = None
+    cell: float = 0.0
 
 
 class Planner(Protocol):

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.model.blank import Blank
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
 from trunnion.plan.casing.grounds import bottom_of, fine_mesh, ground_under
@@ -22,12 +23,16 @@ from trunnion.plan.development.ground import DevelopedGround
 from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.freeform.keys import number
 from trunnion.plan.freeform.lands import STOCK, land_drive
-from trunnion.plan.freeform.surface_drives import space_from
+from trunnion.plan.freeform.surface_drives import space_from, surface_driven
 from trunnion.plan.holes.drive import hole_drive
 from trunnion.progress import Progress
 
 ROUGH_CHORD, FINISH_CHORD = 0.02, 0.002
 """mm: chord errors of circles about the axis while roughing, and while finishing."""
+
+
+CELLS, FINEST, COARSEST = 300.0, 0.5, 2.0
+"""Cells over the blank's length, and mm at least and at most: side of the cells of stock along the directions of bosses and holes."""
 
 
 def ground_in(scene: Scene, pocket: str, progress: Progress) -> DevelopedGround:
@@ -47,9 +52,10 @@ def plane_driven(
     """Return the plane drive of an operation: over a bottom laid flat, or on the top of a boss seen along its normal."""
     if operation.kind not in (ROUGH, FLOOR):
         space = space_from(operation.direction, tolerance.CHORD, scene, progress)
-        stock = scene.stock(space.setup)
-        drive = land_drive(operation, space, (), float(stock.heights.max()), progress)
-        return OperationDrive(setup=space.setup, drive=drive, identity=drive)
+        drive = land_drive(operation, space, (), float(space.high[2]), progress)
+        return OperationDrive(
+            setup=space.setup, drive=drive, identity=drive, cell=stock_cell(scene.blank)
+        )
     ground = ground_in(scene, operation.feature, progress)
     before = [GroundCutter.of(o) for o in earlier_over(operation, scene)]
     if operation.kind == ROUGH:
@@ -118,4 +124,20 @@ def holes_driven(
     """Return the drive of an operation on holes, seen along the operation's direction."""
     setup = cutting_setup(scene.setup, operation.direction, scene.blank)
     drive, findings = hole_drive(operation, scene.recognition, scene.process, setup.frame)
-    return OperationDrive(setup=setup, drive=drive, identity=drive, findings=findings)
+    return OperationDrive(
+        setup=setup, drive=drive, identity=drive, findings=findings, cell=stock_cell(scene.blank)
+    )
+
+
+def sides_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the surface drive of an operation along a boss's normal."""
+    driven = surface_driven(operation, needs, scene, progress)
+    return replace(driven, cell=stock_cell(scene.blank))
+
+
+def stock_cell(blank: Blank) -> float:
+    """Return the side (mm) of the cells that stock beside bosses and holes is known in: there are many directions, and each has only a
+    few links to make over it."""
+    return min(max(float(blank.size.max()) / CELLS, FINEST), COARSEST)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from trunnion.findings import BadInput, Finding, error
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.casing.drives import holes_driven, plane_driven
+from trunnion.plan.casing.drives import holes_driven, plane_driven, sides_driven
 from trunnion.plan.casing.grounds import fine_mesh
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
 from trunnion.plan.casing.plan_state import CasingPlanState
@@ -16,7 +16,6 @@ from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, 
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.feasibility import too_large
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.process import process_of
@@ -87,7 +86,7 @@ class CasingPlanner:
         return driven_by(
             {
                 PlaneDrive: plane_driven,
-                SurfaceDrive: surface_driven,
+                SurfaceDrive: sides_driven,
                 HoleDrive: holes_driven,
             },
             self,

@@ -40,12 +40,13 @@ class StockViews:
         self._known: dict[tuple[str, str], str] = {}
         self._grounds: dict[str, tuple[Development, PlanningStock]] = {}
 
-    def seen(self, setup: Setup) -> PlanningStock:
-        """Return the stock in the frame of a setup (a cutting frame is one), with all that was cut from other directions."""
+    def seen(self, setup: Setup, cell: float = 0.0) -> PlanningStock:
+        """Return the stock in the frame of a setup (a cutting frame is one), with all that was cut from other directions; in cells of
+        a side in mm where it is first looked at so, 0: the usual one."""
         name = digest(setup.frame)
         if name not in self._stocks:
             self._stocks[name], self._frames[name] = (
-                PlanningStock.of(self._blank, setup),
+                PlanningStock.of(self._blank, setup, cell or CELL),
                 setup.frame,
             )
         for other, stock in list(self._stocks.items()):
