@@ -11,7 +11,13 @@ from trunnion.model.tool import Tool
 from trunnion.plan.casing.grounds import bottom_of, ground_under
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.cutting.milling import roughing_depth, roughing_width
-from trunnion.plan.development.drives import GroundCutter, remaining_on, ring_of, tangent_reach
+from trunnion.plan.development.drives import (
+    HAIR,
+    GroundCutter,
+    remaining_on,
+    ring_of,
+    tangent_reach,
+)
 from trunnion.plan.development.ground import DevelopedGround
 from trunnion.plan.freeform.cutters.choice import named
 from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL, STOCK
@@ -30,8 +36,10 @@ CORNER = 0.5
 """mm: the corner radius that roughing cutters last longest with and leave little at feet."""
 SMALLEST = 4.0
 """mm: smaller end mills rough nothing."""
+OPENED = 0.5
+"""Of the square of a cutter's diameter: the least area of a gap or corner that is worth roughing with it."""
 WORTH = 0.004
-"""Share of a bottom that a smaller cutter must reach more to be worth its change."""
+"""Share of a bottom that a small cutter must finish more to be worth its change."""
 FALLING = 0.65
 """Largest diameter of the next smaller cutter over that of the one before."""
 WIDTH = 0.6
@@ -81,7 +89,8 @@ def plan_layers(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
         if tool.diameter > FALLING * last.diameter or tool.diameter < SMALLEST:
             continue
         more = _roughed(state, ground, tool, ring)
-        if more.area - reached.area < WORTH * ring.area:
+        opened = more.minus(reached).opened(HAIR).split()
+        if max((piece.area for piece in opened), default=0.0) < OPENED * tool.diameter**2:
             continue
         _add_layers(state, stage, pocket, ground, tool, f"-{n}")
         last, reached, n = tool, more, n + 1
