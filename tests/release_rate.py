@@ -1,6 +1,6 @@
 """How many of the random parts are released, at once and after repairs, and how much of their feed time is air.
 
-    python tests/release_rate.py panel leaning plate --seeds 0-19 [--jobs 2] [--set KEY=VALUE] [--json FILE] [--keep FOLDER]
+    python tests/release_rate.py panel leaning plate casing --seeds 0-19 [--jobs 2] [--set KEY=VALUE] [--json FILE] [--keep FOLDER]
 
 Every part goes through the command line as a shop's part would. One line a part: verdict, coverage of what can be reached, share of air in
 the feed time, minutes at the machine, seconds it took, and the first line that says why it was rejected.
@@ -101,11 +101,12 @@ def outcomes(
     kinds: Iterable[str], seeds: Iterable[int], folder: Path, words: Sequence[str], jobs: int
 ) -> list[Outcome]:
     """Return what came of the parts of some kinds and seeds, each shown when it is done."""
+    from seeded.casings import casing
     from seeded.leaning_panels import leaning_panel
     from seeded.panels import panel
     from seeded.plates import plate
 
-    makers = {"panel": panel, "leaning": leaning_panel, "plate": plate}
+    makers = {"panel": panel, "leaning": leaning_panel, "plate": plate, "casing": casing}
     parts = [makers[kind](seed) for kind in kinds for seed in seeds]
     files = [(p.name, p.written(folder)) for p in parts]
 
@@ -132,7 +133,7 @@ def summary(kind: str, found: Sequence[Outcome]) -> str:
 def main() -> None:
     """Measure, print, and write."""
     asked = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
-    asked.add_argument("kinds", nargs="+", choices=("panel", "leaning", "plate"))
+    asked.add_argument("kinds", nargs="+", choices=("panel", "leaning", "plate", "casing"))
     asked.add_argument("--seeds", default="0-19")
     asked.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     asked.add_argument("--set", action="append", default=[], dest="words")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cache
 from importlib.resources import as_file
 from typing import Any
@@ -17,7 +18,7 @@ import pytest
 import samples
 from own_packages import names, with_own_packages
 from round_parts import wheel
-from seeded.casings import small_casing
+from seeded.casings import short_ring
 from shaped_parts import bowl
 from trunnion import registry
 from trunnion.findings import BadInput, Cancelled
@@ -37,13 +38,13 @@ MOST_CALLS = 100_000
 def engines() -> dict[str, tuple[Engine, Session]]:
     """Return an engine and its session with features for each small part, by the part's name."""
     found = {}
-    for name, file in (
-        ("pockets", samples.written(samples.two_pockets_and_a_rib_shape())),
-        ("bowl", samples.written(bowl(20.0, 16.0, 8.0, 6.0).shape, name="bowl")),
-        ("shell", samples.written(small_casing(), name="shell-with-bosses")),
-        ("wheel", samples.written(wheel(1).shape, name="wheel")),
+    for name, file, machine in (
+        ("pockets", samples.written(samples.two_pockets_and_a_rib_shape()), ""),
+        ("bowl", samples.written(bowl(20.0, 16.0, 8.0, 6.0).shape, name="bowl"), ""),
+        ("shell", samples.written(short_ring(), name="shell-with-bosses"), "Trunnion 650"),
+        ("wheel", samples.written(wheel(1).shape, name="wheel"), ""),
     ):
-        found[name] = _recognized(file)
+        found[name] = _recognized(file, machine)
     for folder in registry.resource_folders("samples")[1:]:
         for sample in sorted(folder.iterdir(), key=lambda f: f.name) if folder.is_dir() else ():
             with as_file(sample) as file:
@@ -51,9 +52,13 @@ def engines() -> dict[str, tuple[Engine, Session]]:
     return found
 
 
-def _recognized(file: Any) -> tuple[Engine, Session]:
+def _recognized(file: Any, machine: str = "") -> tuple[Engine, Session]:
+    """Return an engine with a part, to be cut on a machine where it needs a certain one, and its session with features."""
     engine = Engine()
-    return engine, engine.run(engine.open(file), until="recognize")
+    session = engine.open(file)
+    if machine:
+        session = replace(session, choices={**session.choices, "setup.machine": machine})
+    return engine, engine.run(session, until="recognize")
 
 
 def part_of(engine: Engine) -> Part:

@@ -142,6 +142,33 @@ def small_casing() -> Any:
     return body.cut(shell.bore()).cut(_drilled(shell, bosses[0])).val().wrapped
 
 
+@cache
+def short_ring() -> Any:
+    """Return a short ring with two bosses, one of them drilled, and a flange at either end: the least that all of a casing's operations are
+    on."""
+    shell = Shell(radius=24.0, slope=0.0, length=26.0, wall=3.0, flange=4.0, rim=5.0, rib=0.0)
+    bosses = [
+        MadeBoss(
+            outline=outline,
+            theta=theta,
+            z=13.0,
+            height=3.0,
+            tilt=0.0,
+            fillet=0.0,
+            sizes=sizes,
+            hole=hole,
+        )
+        for outline, theta, sizes, hole in (
+            ("circle", 20.0, (4.0, 4.0), 4.0),
+            ("rectangle", 200.0, (7.0, 7.0, 2.0), 0.0),
+        )
+    ]
+    body = shell.solid()
+    for boss in bosses:
+        body = _with_boss(body, shell, boss)
+    return body.cut(shell.bore()).cut(_drilled(shell, bosses[0])).val().wrapped
+
+
 def _is_sound(made: MadeCasing) -> bool:
     """Return whether a casing's file holds a solid without faults."""
     with tempfile.TemporaryDirectory() as folder:

@@ -65,8 +65,38 @@ def _some(outline: Floats, start: Floats, direction: Floats) -> Intervals:
     there = np.isfinite(t[:, 1:])
     middle = np.where(there, 0.5 * (t[:, :-1] + np.where(there, t[:, 1:], 0.0)), 0.0)
     positions = start[:, None] + middle[:, :, None] * direction
-    inside = winding_numbers(half_plane(positions.reshape(-1, 3)), *_lines(outline)) != 0
+    inside = _is_inside(outline, half_plane(positions.reshape(-1, 3)))
     return joined(t, inside.reshape(middle.shape) & there)
+
+
+def _is_inside(outline: Floats, at: Floats) -> Bools:
+    """Return whether points (n, 2) are inside an outline (k, 2) that does not cross itself: between two of its heights the lines that pass
+    there keep their order, and a point is inside where an odd number of them lies beyond it."""
+    level, first, slope = _slabs(outline)
+    row = np.searchsorted(level, at[:, 1], side="right") - 1
+    between = (row >= 0) & (row < len(level) - 1)
+    row = np.where(between, row, 0)
+    inside = np.zeros(len(at), dtype=bool)
+    for k in range(first.shape[1]):
+        inside ^= first[row, k] + slope[row, k] * (at[:, 1] - level[row]) > at[:, 0]
+    return inside & between
+
+
+def _slabs(outline: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the heights (k + 1,) of an outline's points, and for the lines that pass between each two of them their radius at the lower
+    one and its change over the height (k, m), below everything where there are fewer."""
+    (r0, z0), (r1, z1) = outline.T, np.roll(outline, -1, axis=0).T
+    level = np.unique(outline[:, 1])
+    low, high = np.minimum(z0, z1), np.maximum(z0, z1)
+    passing = (low[None] <= level[:-1, None]) & (high[None] >= level[1:, None]) & (high > low)
+    most = int(passing.sum(axis=1).max(initial=1))
+    first, slope = (np.full((len(level) - 1, most), v) for v in (-np.inf, 0.0))
+    for k, rows in enumerate(passing):
+        lines = np.flatnonzero(rows)
+        own = (r1 - r0)[lines] / (z1 - z0)[lines]
+        slope[k, : len(lines)] = own
+        first[k, : len(lines)] = r0[lines] + own * (level[k] - z0[lines])
+    return level, first, slope
 
 
 def joined(t: Floats, inside: Bools) -> Intervals:

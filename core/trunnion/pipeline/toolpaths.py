@@ -29,6 +29,7 @@ from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
 from trunnion.toolpath.motion.load import LoadStock, PathLoad
 from trunnion.toolpath.motion.reorient import clearance_sphere, moved_over
+from trunnion.toolpath.motion.rolled import laid_flat, rolled
 from trunnion.toolpath.stock.views import StockViews
 
 DRIVEN = 0.2
@@ -112,12 +113,11 @@ def _make_one(
     )
     try:
         driven = planner.drive(operation, needs, scene, progress.part(0.0, DRIVEN))
-        setup, drive, stock, before = (
-            driven.setup,
-            driven.drive,
-            scene.stock(driven.setup),
-            scene.before(cutter),
+        setup, drive, rolling = driven.setup, driven.drive, driven.rolling
+        stock = (
+            scene.sides.over_ground(rolling) if rolling else scene.sides.seen(setup, driven.cell)
         )
+        before = scene.before(cutter)
         key = digest(
             operation.strategy,
             driven.identity,
@@ -148,7 +148,13 @@ def _make_one(
                 progress.part(DRIVEN, 1.0),
             )
             sphere = clearance_sphere(scene.blank, scene.setup)
-            path = moved_over(turned(planned.path, setup.frame, scene.setup.frame), before, sphere)
+            own = scene.setup.frame
+            path = (
+                rolled(planned.path, rolling.development, own, rolling.chord)
+                if rolling
+                else turned(planned.path, setup.frame, own)
+            )
+            path = moved_over(path, before, sphere)
             kept = OperationPath(
                 operation=operation.id, path=path, findings=tuple(planned.findings), key=key
             )
@@ -163,7 +169,11 @@ def _make_one(
             fix=Fix(kind="smaller_tool", operation=operation.id, reason="toolpath.refused"),
         )
         return OperationPath(operation=operation.id, findings=(refusal,))
-    if len(kept.path):
+    if len(kept.path) and rolling is not None:
+        flat = laid_flat(kept.path, rolling.development, scene.setup.frame)
+        scene.sides.cut_over(rolling, flat, cutter, progress.part(1.0, 1.0))
+        scene.last, scene.tool = kept, cutter
+    elif len(kept.path):
         scene.sides.cut(
             setup,
             turned(kept.path, scene.setup.frame, setup.frame),

@@ -6,15 +6,20 @@ import numpy as np
 
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.turned_outline import outer_meridian
+from trunnion.geometry.turned_state import round_and_straight, turned_state
 from trunnion.model.blank import AXES, Blank, Box, Faceted, Revolved
 from trunnion.model.material import Material
+from trunnion.recognize.revolution import RevolutionAxis, of_revolution
 from trunnion.settings import setting, settings
 from trunnion.tolerance import CHORD, COINCIDENT
 
 AUTOMATIC, BOX, CYLINDER, TURNED, FILE = "auto", "box", "cylinder", "turned", "file"
-KINDS = (AUTOMATIC, BOX, CYLINDER, TURNED, FILE)
+FINISH_TURNED = "finish-turned"
+KINDS = (AUTOMATIC, BOX, CYLINDER, TURNED, FINISH_TURNED, FILE)
 LEVELS = 64
 """Bands along the axis that a turned envelope follows the part in: of 2 mm on a wheel of 120 mm."""
 DECIMALS = 7
@@ -29,8 +34,8 @@ class BlankSettings:
         AUTOMATIC,
         choices=KINDS,
         label="Kind of blank",
-        help="A box, a round bar or a turned envelope around the part, or the solid of a file; auto: what parts of the family are usually "
-        "cut from, a box for most.",
+        help="A box, a round bar or a turned envelope around the part, the part as turning leaves it, or the solid of a file; auto: what "
+        "parts of the family are usually cut from, a box for most.",
     )
     side: float = setting(
         5.0,
@@ -156,6 +161,24 @@ def make_envelope(
     return Revolved(
         frame=frame,
         outline=np.round(_straightened(outline), DECIMALS),
+        material=material.name,
+        density=material.density,
+    )
+
+
+def make_finish_turned(frame: Frame, mesh: Mesh, graph: FaceGraph, material: Material) -> Revolved:
+    """Return what is left of a part's surroundings, its mesh in the part's coordinates, when all that turning about the frame's z reaches
+    is turned to size: faces of revolution are done, rings stand where other features rise from them."""
+    turned = of_revolution(graph, RevolutionAxis(point=frame.origin, direction=frame.z))
+    outline = turned_state(
+        frame.to_local(mesh.points),
+        mesh.triangles,
+        mesh.face,
+        *round_and_straight(turned, graph.surface),
+    )
+    return Revolved(
+        frame=frame,
+        outline=np.round(outline, DECIMALS),
         material=material.name,
         density=material.density,
     )

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from trunnion import registry
 from trunnion.findings import BadInput, Finding, Refused
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.development import Development
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
@@ -134,14 +135,32 @@ class Drive(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RollingGround:
+    """Ground that a path is rolled onto: its development, the chord error (mm) of feeds, and the corners (2,) of the plane's box that the
+    stock over it is known in. `profile` (k, 2): places along the straight lines and how high the blank is there."""
+
+    development: Development
+    chord: float
+    low: Floats
+    high: Floats
+    profile: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OperationDrive:
     """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `identity`, what a digest is made of that tells
-    the drive from others: the drive itself, or its digest, with all else that its queries depend on. `findings` say what was cut off it."""
+    the drive from others: the drive itself, or its digest, with all else that its queries depend on. `findings` say what was cut off it.
+
+    A drive over a `rolling` ground lies in the plane of its development instead, and so does the path until it is rolled onto it. `cell`:
+    side (mm) of the cells that the stock is known in, where it need not be as fine as usual (0).
+    """
 
     setup: Setup
     drive: Drive
     identity: Any
     findings: tuple[Finding, ...] = ()
+    rolling: RollingGround | None = None
+    cell: float = 0.0
 
 
 class Planner(Protocol):

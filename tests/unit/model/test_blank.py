@@ -6,10 +6,12 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from pytest import approx
 
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh, welded
+from trunnion.geometry.revolved import _is_inside
 from trunnion.model.blank import Box, Faceted, Revolved
 from trunnion.model.blank.base import BlankBase
 from trunnion.model.setup import Setup
@@ -260,3 +262,12 @@ def test_faces_of_a_mesh_are_welded_where_they_meet():
     assert len(joined) == 8 and len(rows) == 12
     blank = Faceted(frame=WORLD, points=joined, triangles=rows, material="test", density=1.0)
     assert blank.volume == approx(480.0)
+
+
+def test_a_point_is_inside_a_turned_outline_by_the_lines_beyond_it():
+    outline = np.array(
+        [[10, 0], [20, 0], [20, 5], [15, 5], [15, 10], [22, 20], [12, 20], [12, 12], [10, 12.0]]
+    )
+    at = np.random.default_rng(0).uniform([5, -3], [25, 23], (5000, 2))
+    expected = shapely.contains_xy(shapely.Polygon(outline), at)
+    assert (_is_inside(outline, at) == expected).all() and expected.any()

@@ -138,3 +138,12 @@ def test_a_leaning_face_has_no_outline() -> None:
     wall = next(t for t in part.tags if abs(part.graph().normal[t - 1][0]) > 0.99)
     with pytest.raises(BadInput, match=f"face {wall} of sample is not level"):
         part.face_outline(WORLD, wall)
+
+
+def test_a_plane_that_leans_meets_circles_whose_farthest_points_lie_below_it() -> None:
+    # A disc of radius 50 cut 46 mm off its axis, 60 degrees from x: none of the rim's ends along x and y is as far out.
+    disc = cq.Workplane("XY").circle(50.0).extrude(5.0).val().wrapped
+    out = np.array([math.cos(math.radians(60.0)), math.sin(math.radians(60.0)), 0.0])
+    leaning = Frame(np.zeros(3), np.array([0.0, 0.0, 1.0]), out)
+    wide = 2.0 * math.sqrt(50.0**2 - 46.0**2)
+    assert samples.read(disc).section(leaning, 46.0).area == pytest.approx(5.0 * wide, abs=1e-6)

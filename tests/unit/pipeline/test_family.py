@@ -156,10 +156,10 @@ def shell() -> Path:
     return samples.written(round_parts.shell(4).shape, name="shell")
 
 
-def test_program_refuses_a_family_without_a_planner_in_one_line(shell, tmp_path, capsys) -> None:
+def test_program_refuses_a_casing_without_rotary_axes_in_one_line(shell, tmp_path, capsys) -> None:
     assert main(["program", str(shell), "-o", str(tmp_path / "out")]) == BAD
     said = capsys.readouterr().err
-    assert "parts of the family casing are segmented and measured, but not planned yet" in said
+    assert "the machine has no rotary axes; choose a machine" in said
     assert said.startswith("trunnion: ") and len(said.splitlines()) == 1
 
 

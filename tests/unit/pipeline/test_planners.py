@@ -63,10 +63,10 @@ def as_family(session, family):
 def test_a_family_without_a_planner_is_refused_with_what_to_do() -> None:
     with pytest.raises(
         BadInput,
-        match="parts of the family casing are segmented and measured, but not planned yet; for flat pockets and "
-        "outlines choose recognize.family = panel or surface",
+        match="parts of the family spindle are segmented and measured, but not planned yet; for flat pockets and "
+        "outlines choose recognize.family = casing or panel or surface",
     ):
-        planner_for("casing")
+        planner_for("spindle")
 
 
 def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_and_family(

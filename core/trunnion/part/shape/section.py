@@ -209,13 +209,8 @@ class SolidSlicer:
                 ]
         for n in self._others:
             edge = self.edges[n]
-            heights = plane.above(edge.extremes)
-            if heights.min() < 0.0 < heights.max():
-                parameters = (
-                    _on_circle(edge, plane)
-                    if edge.kind == GeomAbs_Circle
-                    else _on_curve(edge, plane)
-                )
+            parameters = _parameters_on(edge, plane)
+            if parameters:
                 found[n] = [
                     ((n, k), np.array(edge.adaptor.Value(t).Coord()))
                     for k, t in enumerate(parameters)
@@ -229,6 +224,17 @@ def _edge(shape: Shape) -> SectionEdge:
     steps = 2 if kind in (GeomAbs_Line, GeomAbs_Circle) else _SAMPLES
     points = np.array([adaptor.Value(t).Coord() for t in np.linspace(first, last, steps)])
     return SectionEdge(shape, adaptor, first, last, kind, points, edge_extremes(adaptor, points))
+
+
+def _parameters_on(edge: SectionEdge, plane: Plane) -> list[float]:
+    """Return the parameters where a round or free edge meets the plane, ascending.
+
+    A circle's points that are farthest along x, y and z may all lie on one side of a plane that leans: its own reach decides.
+    """
+    if edge.kind == GeomAbs_Circle:
+        return _on_circle(edge, plane)
+    heights = plane.above(edge.extremes)
+    return _on_curve(edge, plane) if heights.min() < 0.0 < heights.max() else []
 
 
 def _on_circle(edge: SectionEdge, plane: Plane) -> list[float]:

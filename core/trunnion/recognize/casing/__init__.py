@@ -36,7 +36,7 @@ class CasingFamily:
     noun = "a casing"
     kinds = KINDS
     settings = CasingSettings
-    blank = "turned"
+    blank = "finish-turned"
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return the share of the part's area in faces of revolution about its main axis and in what stands on them."""

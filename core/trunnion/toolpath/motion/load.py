@@ -47,7 +47,8 @@ class LoadStock:
     def __init__(self, blank: Blank, frame: Frame) -> None:
         c, s = math.cos(TURN), math.sin(TURN)
         self.frame = Frame(origin=frame.origin, x=c * frame.x + s * frame.y, z=frame.z)
-        self._stock = PlanningStock.centred_in(blank, self.frame, CELL)
+        self._blank = blank
+        self._stock: PlanningStock | None = None
 
     def cut(
         self,
@@ -58,6 +59,9 @@ class LoadStock:
         progress: Progress = NO_PROGRESS,
     ) -> PathLoad:
         """Take a path of an upright tool, in this stock's own frame, off it and return its load."""
+        if self._stock is None:
+            # A setup whose tools all lean needs none, and of a large turned blank it takes seconds.
+            self._stock = PlanningStock.centred_in(self._blank, self.frame, CELL)
         cuts = path.motion != Motion.RAPID
         pieces, _ = in_pieces(path, PIECE * tool.radius, cuts)
         return load_of(pieces, tool, data, material, *self._stock.taken(pieces, tool, progress))

@@ -6,6 +6,7 @@ the blank that no field has above it: taken over in steps of a cell, always on t
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -13,14 +14,16 @@ from scipy.ndimage import maximum_filter
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.development import Development
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.contract import RollingGround
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
-from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.heightfield import CELL, MOST_CELLS, PlanningStock
 from trunnion.toolpath.stock.remaining import RemainingStock
 
 NEIGHBOURHOOD = 3
@@ -35,13 +38,15 @@ class StockViews:
         self._stocks: dict[str, PlanningStock] = {}
         self._frames: dict[str, Frame] = {}
         self._known: dict[tuple[str, str], str] = {}
+        self._grounds: dict[str, tuple[Development, PlanningStock]] = {}
 
-    def seen(self, setup: Setup) -> PlanningStock:
-        """Return the stock in the frame of a setup (a cutting frame is one), with all that was cut from other directions."""
+    def seen(self, setup: Setup, cell: float = 0.0) -> PlanningStock:
+        """Return the stock in the frame of a setup (a cutting frame is one), with all that was cut from other directions; in cells of
+        a side in mm where it is first looked at so, 0: the usual one."""
         name = digest(setup.frame)
         if name not in self._stocks:
             self._stocks[name], self._frames[name] = (
-                PlanningStock.of(self._blank, setup),
+                PlanningStock.of(self._blank, setup, cell or CELL),
                 setup.frame,
             )
         for other, stock in list(self._stocks.items()):
@@ -52,7 +57,35 @@ class StockViews:
                 self._stocks[name] = _lowered(
                     self._stocks[name], setup.frame, stock, self._frames[other], lowest, foot
                 )
+        for key, (development, stock) in self._grounds.items():
+            if self._known.get((name, key)) != stock.digest:
+                self._known[name, key] = stock.digest
+                self._stocks[name] = _lowered_over(
+                    self._stocks[name],
+                    setup.frame,
+                    stock,
+                    development,
+                    _lowest(self._blank, setup.frame),
+                )
         return self._stocks[name]
+
+    def over_ground(self, ground: RollingGround) -> PlanningStock:
+        """Return the stock over the plane of a development, with all that was cut over it."""
+        name = digest(ground.development)
+        if name not in self._grounds:
+            self._grounds[name] = (ground.development, _over(ground))
+        return self._grounds[name][1]
+
+    def cut_over(
+        self,
+        ground: RollingGround,
+        path: Toolpath,
+        tool: Tool,
+        progress: Progress = NO_PROGRESS,
+    ) -> None:
+        """Take a path over the plane of a development off the stock there."""
+        stock = self.over_ground(ground).after(path, tool, progress)
+        self._grounds[digest(ground.development)] = (ground.development, stock)
 
     def remaining_stock(self, frame: Frame) -> RemainingStock:
         """Return what stands of the blank by all directions together, in a frame."""
@@ -99,6 +132,52 @@ def _lowered(
         rows = rows[heights[rows] > lowest]
     kept = np.maximum(heights, lowest).reshape(stock.heights.shape)
     return replace(stock, heights=_fixed(kept), digest=digest(stock.digest, other.digest))
+
+
+def _lowered_over(
+    stock: PlanningStock,
+    frame: Frame,
+    other: PlanningStock,
+    development: Development,
+    lowest: float,
+) -> PlanningStock:
+    """Return a stock without what the one over a development knows to be gone: beside that plane, and under it, nothing is known."""
+    material = maximum_filter(other.heights, NEIGHBOURHOOD, mode="nearest")
+    positions, heights = _centres(stock), stock.heights.ravel().copy()
+    step, last = stock.cell, np.array(material.shape) - 1
+    rows = np.flatnonzero(heights > lowest)
+    while len(rows):
+        at = np.column_stack([positions[rows], heights[rows] - 0.5 * step])
+        there = development.to_local(frame.to_world(at))
+        cell = np.floor((there[:, :2] - other.corner) / other.cell).astype(np.int64)
+        known = ((cell >= 0) & (cell <= last)).all(axis=1)
+        gone = known & (there[:, 2] - step > material[tuple(np.clip(cell, 0, last).T)])
+        rows = rows[gone]
+        heights[rows] -= step
+        rows = rows[heights[rows] > lowest]
+    kept = np.maximum(heights, lowest).reshape(stock.heights.shape)
+    return replace(stock, heights=_fixed(kept), digest=digest(stock.digest, other.digest))
+
+
+def _over(ground: RollingGround) -> PlanningStock:
+    """Return the uncut stock over a development: each cell as high as the blank is anywhere near it along the straight lines."""
+    size = ground.high - ground.low
+    cell = max(CELL, float(np.sqrt(size[0] * size[1] / MOST_CELLS)))
+    shape = tuple(np.ceil(size / cell).astype(int))
+    rows = np.argwhere(np.ones(shape, dtype=bool))
+    middle = np.column_stack([ground.low + (rows + 0.5) * cell, np.zeros(len(rows))])
+    along = ground.development.along_and_turn(middle)[0]
+    v, high = ground.profile.T
+    spread = max(1, math.ceil(cell / float(v[1] - v[0])))
+    highest = maximum_filter(high, 2 * spread + 1, mode="nearest")
+    row = np.clip(np.round((along - v[0]) / (v[1] - v[0])).astype(np.int64), 0, len(v) - 1)
+    heights = highest[row].reshape(shape)
+    return PlanningStock(
+        heights=_fixed(heights),
+        corner=_fixed(ground.low.copy()),
+        cell=cell,
+        digest=digest(ground.development, shape, cell, ground.profile),
+    )
 
 
 def _lowest(blank: Blank, frame: Frame) -> float:

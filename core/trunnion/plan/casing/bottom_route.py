@@ -1,0 +1,259 @@
+"""The operations over the bottoms of a casing laid flat: layers of falling cutters, the bottom, and the feet of what stands on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from trunnion.findings import Finding, Refused, error, face_tags, warning
+from trunnion.geometry.plane.region import Region
+from trunnion.model.feature import Feature
+from trunnion.model.tool import Tool
+from trunnion.plan.casing.grounds import bottom_of, ground_under
+from trunnion.plan.casing.plan_state import CasingPlanState
+from trunnion.plan.cutting.milling import roughing_depth, roughing_width
+from trunnion.plan.development.drives import (
+    HAIR,
+    GroundCutter,
+    remaining_on,
+    ring_of,
+    tangent_reach,
+)
+from trunnion.plan.development.ground import DevelopedGround
+from trunnion.plan.freeform.cutters.choice import named
+from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL, STOCK
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
+from trunnion.plan.tool_choice import depth_reached
+from trunnion.recognize.casing.kinds import BOTTOM, POCKET
+from trunnion.settings import Value
+from trunnion.shop import Stage
+from trunnion.units import trimmed
+
+LAYERS, REST_LAYERS, BOTTOM_CUTTER, FOOT = "layers", "rest_layers", "bottom", "foot"
+"""Words that a typical plan may give for the cutter of a stage on bottoms."""
+BESIDE = 0.5
+"""mm that shank and holder keep from the part, beside the cutter's own allowance."""
+CORNER = 0.5
+"""mm: the corner radius that roughing cutters last longest with and leave little at feet."""
+SMALLEST = 4.0
+"""mm: smaller end mills rough nothing."""
+OPENED = 0.5
+"""Of the square of a cutter's diameter: the least area of a gap or corner that is worth roughing with it."""
+WORTH = 0.004
+"""Share of a bottom that a small cutter must finish more to be worth its change."""
+FALLING = 0.65
+"""Largest diameter of the next smaller cutter over that of the one before."""
+WIDTH = 0.6
+"""Distance of passes over the width of an end mill's flat."""
+FEET = 2.0
+"""Radius of the cutter for feet over how far a level disc finishes bent ground, at most."""
+LEAST = 0.02
+"""mm: the depth that cutting data are found for where roughing leaves nothing."""
+
+
+def plan_grounds(state: CasingPlanState) -> None:
+    """Lay flat the bottoms of all pockets; tell of those that can't be."""
+    pockets = [p for p in state.recognition.of_kind(POCKET) if p.with_role(BOTTOM)]
+    for n, pocket in enumerate(pockets):
+        progress = state.progress.part(n / len(pockets), (n + 1) / len(pockets))
+        progress.at(0.0, f"laying flat {pocket.id}")
+        try:
+            bottom = bottom_of(state.recognition, state.part, pocket.id)
+            ground = ground_under(
+                bottom, state.recognition, state.part, state.mesh, state.blank, progress
+            )
+        except Refused as reason:
+            state.findings.append(_not_planned(pocket, str(reason)))
+            continue
+        if ring_of(ground):
+            state.grounds[pocket.id] = ground.watched(state.progress)
+
+
+def plan_layers(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
+    """Add the first roughing of a bottom, or all the smaller cutters after it."""
+    ground = state.grounds[pocket.id]
+    ring = ring_of(ground).minus(ground.over(state.route.floor_allowance))
+    if stage.cutter == LAYERS:
+        wanted = state.settings.rough_cutter
+        tool = named(state.shop, wanted) if wanted else _rougher(state, ground, ring)
+        if tool is None:
+            state.findings.append(_no_cutter(pocket, stage, ground))
+            return
+        _add_layers(state, stage, pocket, ground, tool, "")
+        return
+    before = [o.cutter for o in state.operations if o.feature == pocket.id and o.kind == "rough"]
+    if not before:
+        return
+    last, reached = before[-1], _roughed(state, ground, before[-1], ring)
+    n = 1
+    for tool in _rough_candidates(state, ground):
+        if tool.diameter > FALLING * last.diameter or tool.diameter < SMALLEST:
+            continue
+        more = _roughed(state, ground, tool, ring)
+        opened = more.minus(reached).opened(HAIR).split()
+        if max((piece.area for piece in opened), default=0.0) < OPENED * tool.diameter**2:
+            continue
+        _add_layers(state, stage, pocket, ground, tool, f"-{n}")
+        last, reached, n = tool, more, n + 1
+
+
+def plan_floor(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
+    """Add the finishing of a bottom, or of what its cutter leaves at feet."""
+    ground = state.grounds[pocket.id]
+    ring = ring_of(ground).minus(ground.over(LEAST))
+    before = [
+        GroundCutter.of(o) for o in state.operations if o.feature == pocket.id and o.kind == "floor"
+    ]
+    reach = tangent_reach(ground)
+    if stage.cutter == BOTTOM_CUTTER:
+        wanted = state.settings.finish_cutter
+        tool = named(state.shop, wanted) if wanted else _finisher(state, ground, ring)
+    else:
+        if not before or before[-1].tool.radius <= reach:
+            return
+        tool = _foot_cutter(state, ground, reach)
+        left = remaining_on(ground, ring, before)
+        if not left or left.area < WORTH * ring.area:
+            return
+    if tool is None:
+        state.findings.append(_no_cutter(pocket, stage, ground))
+        return
+    stock = state.route.floor_allowance
+    width = min(WIDTH * (tool.diameter - 2.0 * tool.corner_radius), 2.0 * reach)
+    state.add(
+        stage,
+        pocket.id,
+        pocket.id,
+        tool,
+        depth=stock,
+        width=width,
+        faces=pocket.with_role(BOTTOM),
+        choices={
+            STOCK: stock,
+            AROUND_TOOL: BESIDE,
+            ABOVE_TOOL: state.route.reach_clearance,
+            "plane.floor.wall_distance": 0.0,
+        },
+        why=f"{tool.name}: {trimmed(width, 2)} mm between passes on a radius of {trimmed(ground.least_radius, 1)} mm.",
+    )
+
+
+def _add_layers(
+    state: CasingPlanState,
+    stage: Stage,
+    pocket: Feature,
+    ground: DevelopedGround,
+    tool: Tool,
+    name: str,
+) -> None:
+    bears = roughing_depth(tool, state.material, state.cutting)
+    depth = min(bears, state.settings.layer) if state.settings.layer > 0.0 else bears
+    wall, floor = state.route.wall_allowance, state.route.floor_allowance
+    choices: dict[str, Value] = {
+        WALL_ALLOWANCE: wall,
+        FLOOR_ALLOWANCE: floor,
+        AROUND_TOOL: wall + BESIDE,
+        ABOVE_TOOL: state.route.reach_clearance,
+    }
+    state.add(
+        stage,
+        f"{pocket.id}{name}",
+        pocket.id,
+        tool,
+        depth=depth,
+        width=roughing_width(tool, state.material, state.cutting),
+        choices=choices,
+        why=f"{tool.name}: {trimmed(ground.top, 2)} mm stand over the bottom, layers of {trimmed(depth, 2)} mm at most; "
+        f"{trimmed(wall, 2)} mm are left on sides, {trimmed(floor, 2)} mm on the bottom.",
+    )
+
+
+def _rough_candidates(state: CasingPlanState, ground: DevelopedGround) -> list[Tool]:
+    """Return end mills that rough down to the bottom, the largest and shortest first."""
+    deep = ground.top + state.route.reach_clearance
+    fits = [
+        t
+        for t in state.cutters("rough")
+        if t.form in ("flat", "bull")
+        and t.diameter <= state.route.largest
+        and depth_reached(t) >= deep
+    ]
+    fits.sort(key=lambda t: (-t.diameter, depth_reached(t), abs(t.corner_radius - CORNER), t.name))
+    return _one_a_size(fits)
+
+
+def _one_a_size(tools: Sequence[Tool]) -> list[Tool]:
+    """Return the first of the tools of each diameter."""
+    found: dict[float, Tool] = {}
+    for tool in tools:
+        found.setdefault(tool.diameter, tool)
+    return list(found.values())
+
+
+def _rougher(state: CasingPlanState, ground: DevelopedGround, ring: Region) -> Tool | None:
+    tools = _rough_candidates(state, ground)
+    for tool in tools:
+        if _roughed(state, ground, tool, ring).area >= state.settings.share * ring.area:
+            return tool
+    return tools[-1] if tools else None
+
+
+def _roughed(state: CasingPlanState, ground: DevelopedGround, tool: Tool, ring: Region) -> Region:
+    """Return what of a ring a roughing cutter clears."""
+    wall = state.route.wall_allowance
+    free = ground.free(
+        state.route.floor_allowance, tool, wall + BESIDE, state.route.reach_clearance
+    )
+    axis_region = free.offset(-tool.radius - wall)
+    return axis_region.offset(tool.radius + wall).intersect(ring) if axis_region else axis_region
+
+
+def _finisher(state: CasingPlanState, ground: DevelopedGround, ring: Region) -> Tool | None:
+    deep = ground.top + state.route.reach_clearance
+    fits = [
+        t
+        for t in state.cutters("finish")
+        if t.form == "flat" and t.diameter <= state.route.largest and depth_reached(t) >= deep
+    ]
+    tools = _one_a_size(sorted(fits, key=lambda t: (-t.diameter, depth_reached(t), t.name)))
+    for tool in tools:
+        axis_region = ground.free(0.0, tool, BESIDE, state.route.reach_clearance).offset(
+            -tool.radius
+        )
+        if axis_region:
+            done = axis_region.offset(tool.radius).intersect(ring)
+            if done.area >= state.settings.share * ring.area:
+                return tool
+    return tools[-1] if tools else None
+
+
+def _foot_cutter(state: CasingPlanState, ground: DevelopedGround, reach: float) -> Tool | None:
+    """Return the largest end mill whose disc finishes bent ground nearly to its rim."""
+    deep = ground.top + state.route.reach_clearance
+    fits = [t for t in state.cutters("finish") if t.form == "flat" and depth_reached(t) >= deep]
+    small = [t for t in fits if t.radius <= FEET * reach]
+    pool = small or sorted(fits, key=lambda t: t.diameter)[:1]
+    return max(pool, key=lambda t: (t.diameter, -depth_reached(t), t.name), default=None)
+
+
+def _not_planned(pocket: Feature, reason: str) -> Finding:
+    return warning(
+        "route.not-planned",
+        reason,
+        pocket.id,
+        *face_tags(pocket.tags),
+        remedy="mill it by operations added by hand",
+    )
+
+
+def _no_cutter(pocket: Feature, stage: Stage, ground: DevelopedGround) -> Finding:
+    return error(
+        "route.no-cutter",
+        f"{stage.name} of {pocket.id}: no end mill reaches {trimmed(ground.top, 1)} mm down between what stands there",
+        pocket.id,
+        remedy="add a longer or smaller cutter to the tools folder",
+    )
+
+
+def grounds_in_order(state: CasingPlanState) -> Sequence[Feature]:
+    """Return the pockets whose bottoms are laid flat."""
+    return [p for p in state.recognition.of_kind(POCKET) if p.id in state.grounds]

@@ -1,0 +1,143 @@
+"""What drives the operations on a casing: over bottoms laid flat, and along the directions of bosses and holes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.model.blank import Blank
+from trunnion.model.operation import Operation
+from trunnion.model.setup import Setup
+from trunnion.plan.casing.grounds import bottom_of, fine_mesh, ground_under
+from trunnion.plan.contract import DriveNeeds, OperationDrive, RollingGround, Scene
+from trunnion.plan.development.drives import (
+    FLOOR,
+    ROUGH,
+    GroundCutter,
+    floor_over,
+    layers_over,
+)
+from trunnion.plan.development.ground import DevelopedGround
+from trunnion.plan.freeform.frames import cutting_setup
+from trunnion.plan.freeform.keys import number
+from trunnion.plan.freeform.lands import STOCK, land_drive
+from trunnion.plan.freeform.surface_drives import space_from, surface_driven
+from trunnion.plan.holes.drive import hole_drive
+from trunnion.progress import Progress
+
+ROUGH_CHORD, FINISH_CHORD = 0.02, 0.002
+"""mm: chord errors of circles about the axis while roughing, and while finishing."""
+
+
+CELLS, FINEST, COARSEST = 300.0, 0.5, 2.0
+"""Cells over the blank's length, and mm at least and at most: side of the cells of stock along the directions of bosses and holes."""
+
+
+def ground_in(scene: Scene, pocket: str, progress: Progress) -> DevelopedGround:
+    """Return the ground of a pocket, made once for all operations of a setup."""
+
+    def made() -> DevelopedGround:
+        part = scene.context.part
+        bottom = bottom_of(scene.recognition, part, pocket)
+        return ground_under(bottom, scene.recognition, part, fine_mesh(part), scene.blank, progress)
+
+    return scene.once(("ground", pocket), made).watched(progress)
+
+
+def plane_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the plane drive of an operation: over a bottom laid flat, or on the top of a boss seen along its normal."""
+    if operation.kind not in (ROUGH, FLOOR):
+        space = space_from(operation.direction, tolerance.CHORD, scene, progress)
+        drive = land_drive(operation, space, (), float(space.high[2]), progress)
+        return OperationDrive(
+            setup=space.setup, drive=drive, identity=drive, cell=stock_cell(scene.blank)
+        )
+    ground = ground_in(scene, operation.feature, progress)
+    before = [GroundCutter.of(o) for o in earlier_over(operation, scene)]
+    if operation.kind == ROUGH:
+        drive = layers_over(operation, ground, boss_tops(ground), before)
+    else:
+        drive = floor_over(operation, ground, before, number(operation, STOCK))
+    rolling = rolling_on(ground, ROUGH_CHORD if operation.kind == ROUGH else FINISH_CHORD)
+    setup = flat_setup(scene.setup, ground)
+    return OperationDrive(
+        setup=setup, drive=drive, identity=(drive, ground.development), rolling=rolling
+    )
+
+
+def earlier_over(operation: Operation, scene: Scene) -> list[Operation]:
+    """Return the operations of an operation's kind that went over the same bottom before."""
+    found = []
+    for o in scene.process.of_setup(operation.setup):
+        if o.id == operation.id:
+            break
+        if o.kind == operation.kind and o.feature == operation.feature and not o.suppressed:
+            found.append(o)
+    return found
+
+
+def boss_tops(ground: DevelopedGround) -> tuple[float, ...]:
+    """Return the heights over ground from which on each boss on it is clear."""
+    low, high = ground.ends
+    found = []
+    for each in ground.obstacles:
+        if each.closed and len(each.corners):
+            along = ground.development.along_and_turn(each.corners.reshape(-1, 3))[0]
+            if low <= float(np.median(along)) <= high:
+                found.append(float(each.corners[:, :, 2].max()))
+    return tuple(sorted(set(found)))
+
+
+def rolling_on(ground: DevelopedGround, chord: float) -> RollingGround:
+    """Return what a path over ground is rolled onto."""
+    low, high = ground.around().box()
+    return RollingGround(
+        development=ground.development,
+        chord=chord,
+        low=np.asarray(low),
+        high=np.asarray(high),
+        profile=ground.profile,
+    )
+
+
+def flat_setup(setup: Setup, ground: DevelopedGround) -> Setup:
+    """Return a setup over the plane of ground laid flat: its tool travels as far over all of blank and part there as over the blank in
+    the setup itself."""
+    above = float(ground.profile[:, 1].max())
+    for each in ground.obstacles:
+        if len(each.corners):
+            above = max(above, float(each.corners[:, :, 2].max()))
+    return replace(setup, clearance=above + CLEARANCE, fixtures=())
+
+
+CLEARANCE = 10.0
+"""mm that rapids over bottoms stay above everything there."""
+
+
+def holes_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the drive of an operation on holes, seen along the operation's direction."""
+    setup = cutting_setup(scene.setup, operation.direction, scene.blank)
+    drive, findings = hole_drive(operation, scene.recognition, scene.process, setup.frame)
+    return OperationDrive(
+        setup=setup, drive=drive, identity=drive, findings=findings, cell=stock_cell(scene.blank)
+    )
+
+
+def sides_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the surface drive of an operation along a boss's normal."""
+    driven = surface_driven(operation, needs, scene, progress)
+    return replace(driven, cell=stock_cell(scene.blank))
+
+
+def stock_cell(blank: Blank) -> float:
+    """Return the side (mm) of the cells that stock beside bosses and holes is known in: there are many directions, and each has only a
+    few links to make over it."""
+    return min(max(float(blank.size.max()) / CELLS, FINEST), COARSEST)

@@ -1,0 +1,98 @@
+"""What is known of a casing while its milling is planned, and the operations so far."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from trunnion.findings import Finding
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.mesh import Mesh
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Recognition
+from trunnion.model.material import Machine, Material
+from trunnion.model.operation import Operation
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.part.part import Part
+from trunnion.plan.casing.milling_settings import CasingRouteSettings
+from trunnion.plan.contract import PartContext
+from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
+from trunnion.plan.development.ground import DevelopedGround
+from trunnion.plan.freeform.frames import UPRIGHT, Direction
+from trunnion.plan.settings import RouteSettings
+from trunnion.progress import Progress
+from trunnion.settings import Value
+from trunnion.shop import Shop, Stage
+
+
+@dataclass(slots=True, kw_only=True)
+class CasingPlanState:
+    """What is known while a casing's setup is planned; `grounds` are the bottoms laid flat, by their pockets."""
+
+    part: Part
+    mesh: Mesh
+    context: PartContext
+    recognition: Recognition
+    blank: Blank
+    setup: Setup
+    material: Material
+    machine: Machine
+    shop: Shop
+    route: RouteSettings
+    settings: CasingRouteSettings
+    cutting: CuttingSettings
+    progress: Progress
+    grounds: dict[str, DevelopedGround] = field(default_factory=dict)
+    operations: list[Operation] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+
+    def cutters(self, use: str) -> list[Tool]:
+        """Return the catalogue's cutters for a use and the blank's material."""
+        return list(self.shop.tools_for(self.material.iso_group, use))
+
+    def direction(self, out: Floats) -> Direction:
+        """Return a direction of the part's coordinates in the setup's frame, upright where it is by less than what parallel means."""
+        local = self.setup.frame.local_direction(out)
+        x, y, z = (float(v) for v in local)
+        return UPRIGHT if z > 1.0 - NEARLY else (x, y, z)
+
+    def add(
+        self,
+        stage: Stage,
+        name: str,
+        feature: str,
+        tool: Tool,
+        *,
+        depth: float,
+        width: float,
+        faces: tuple[int, ...] = (),
+        choices: dict[str, Value] | None = None,
+        why: str,
+        direction: Direction = UPRIGHT,
+        others: tuple[str, ...] = (),
+        kind: str = "",
+    ) -> None:
+        """Add an operation of a stage, with data for a depth and a width (mm) of cut."""
+        kind = kind or stage.kind
+        data = cutting_data(tool, self.material, self.machine, kind, self.cutting, depth, width)
+        self.operations.append(
+            Operation(
+                id=f"{stage.name}-{name}".replace(" ", "-"),
+                kind=kind,
+                strategy=stage.strategy,
+                feature=feature,
+                setup=self.setup.name,
+                tool=tool,
+                data=data,
+                faces=faces,
+                choices=choices or {},
+                rules=(stage.rule, why),
+                group=stage.name,
+                direction=direction,
+                others=others,
+            )
+        )
+
+
+NEARLY = 1e-9
+"""What the z of an upright direction may be off 1."""

@@ -1,0 +1,97 @@
+"""The planner of casings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trunnion.findings import BadInput, Finding, error
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.plan.casing.drives import holes_driven, plane_driven, sides_driven
+from trunnion.plan.casing.grounds import fine_mesh
+from trunnion.plan.casing.milling_settings import CasingRouteSettings
+from trunnion.plan.casing.plan_state import CasingPlanState
+from trunnion.plan.casing.route import CUTTER_RULES, make_casing_route
+from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
+from trunnion.plan.cutting.milling import CuttingSettings
+from trunnion.plan.feasibility import too_large
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.holes.drive import HoleDrive
+from trunnion.plan.prismatic.drive import PlaneDrive
+from trunnion.plan.process import process_of
+from trunnion.plan.settings import RouteSettings
+from trunnion.plan.typical import typical_plan
+from trunnion.progress import Progress
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
+
+
+class CasingPlanner:
+    """Plans the milled side of a casing: bottoms laid flat, bosses along their normals, holes along their axes."""
+
+    name, noun = "casing", "casings"
+    settings: tuple[type, ...] = (RouteSettings, CasingRouteSettings)
+    cutter_rules: tuple[str, ...] = CUTTER_RULES
+
+    def can_plan(self, part: Part) -> None:
+        """Raise `BadInput` for faces that enclose no material."""
+        if not part.is_closed:
+            raise BadInput("nothing can be planned for faces that enclose no material")
+
+    def route(self, job: RouteJob) -> ProcessTree:
+        """Return the process by `make_casing_route`, or why the blank fits no machine."""
+        route = job.settings_of(RouteSettings)
+        plan = typical_plan(job.shop, job.recognition.family, route.plan, CUTTER_RULES)
+        material = job.shop.material(job.blank.material)
+        findings = too_large(job.blank, job.setups, job.shop) or self._without_axes(job)
+        if findings:
+            return process_of(
+                (), findings, plan=plan, material=material, setups=job.setups, shop=job.shop
+            )
+        part = job.context.part
+        state = CasingPlanState(
+            part=part,
+            mesh=job.progress.aside(lambda _: fine_mesh(part)),
+            context=job.context,
+            recognition=job.recognition,
+            blank=job.blank,
+            setup=job.setups[0],
+            material=material,
+            machine=job.shop.machine(job.setups[0].machine),
+            shop=job.shop,
+            route=route,
+            settings=job.settings_of(CasingRouteSettings),
+            cutting=job.settings_of(CuttingSettings),
+            progress=job.progress,
+        )
+        return make_casing_route(state, plan)
+
+    def _without_axes(self, job: RouteJob) -> list[Finding]:
+        if job.shop.machine(job.setups[0].machine).rotary:
+            return []
+        return [
+            error(
+                "route.not-planned",
+                "bosses are milled along their own normals, and the machine has no rotary axes",
+                *(f.id for f in job.recognition),
+                remedy="choose a machine with rotary axes that leans the tool by 90 degrees (setup.machine)",
+            )
+        ]
+
+    def drive(
+        self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+    ) -> OperationDrive:
+        """Return the drive that an operation's strategy needs."""
+        return driven_by(
+            {
+                PlaneDrive: plane_driven,
+                SurfaceDrive: sides_driven,
+                HoleDrive: holes_driven,
+            },
+            self,
+            operation,
+            needs,
+            scene,
+            progress,
+        )

@@ -1,0 +1,244 @@
+"""Turned ground laid flat, with all of the part that stands on it: where a tool whose axis is the ground's normal may go."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import shapely
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.developed_mesh import developed_triangles
+from trunnion.geometry.development import Development
+from trunnion.geometry.mesh import Mesh
+from trunnion.geometry.plane.plan_area import plan_area_above, region_of
+from trunnion.geometry.plane.region import Region, union_all
+from trunnion.model.blank import Blank
+from trunnion.model.tool import Tool
+from trunnion.progress import NO_PROGRESS, Progress
+
+AROUND = 45.0
+"""mm beyond the ground and beyond half a turn that are looked at: two diameters of the largest cutter."""
+BELOW = -0.5
+"""mm under the ground from where on the part is looked at."""
+SKIM = 5e-3
+"""mm above a height that what is in a cutter's way begins: the triangles of bent faces are off by as much."""
+GROWN = 1e-3
+"""mm that each triangle is grown before they are joined."""
+STEP = 2.0
+"""mm: heights that shank and holder are kept off the part at go in such steps, always down."""
+LAP, ROUNDED = 2e-3, 6
+"""mm by which bands lap over what makes them, and decimals of mm of their pieces."""
+CHORD = 0.01
+"""mm: chord error of circles over the plane of a cone."""
+LINES = 400
+"""Places along the straight lines at which the blank's height is taken."""
+TURNS = (0.0, 1.0, 2.7)
+"""rad about the axis at which a blank must look the same to count as round."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class GroundObstacle:
+    """Faces that stand on ground together: corners (t, 3, 3) over its plane, and whether openings in them are no way down to it."""
+
+    corners: Floats
+    closed: bool
+    _upper: list[Region] = field(init=False, repr=False, default_factory=list)
+
+    def over(self, z: float) -> Region:
+        """Return the plane's area over which they reach higher than a height."""
+        middle = 0.5 * float(self.corners[:, :, 2].max(initial=0.0))
+        upper = self.corners[:, :, 2].min(axis=1) >= middle
+        if z >= middle or not upper.any():
+            area = plan_area_above(self.corners, z, GROWN)
+        else:
+            # What is wholly in the upper half is over every lower height: its area is worked out once.
+            if not self._upper:
+                self._upper.append(plan_area_above(self.corners[upper], middle, GROWN))
+            area = self._upper[0].union(plan_area_above(self.corners[~upper], z, GROWN))
+        return area.holes_filled() if self.closed and area else area
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class DevelopedGround:
+    """Ground between two places (mm) along its straight lines, with what stands on it and around it.
+
+    `rings` (k, 4): pieces of the meridians of what runs round, each from a place and a height to another one. `profile` (k, 2): the height
+    mm of the blank over the plane at places along the straight lines. `found`: what the part has above heights, each worked out once, with
+    looks at `progress`.
+    """
+
+    development: Development
+    ends: tuple[float, float]
+    obstacles: tuple[GroundObstacle, ...]
+    rings: Floats
+    profile: Floats
+    progress: Progress = NO_PROGRESS
+    found: dict[float, Region] = field(repr=False, default_factory=dict)
+
+    @property
+    def least_radius(self) -> float:
+        """The least radius (mm) of the ground."""
+        return float(self.development.radius_at(np.array(self.ends)).min())
+
+    @property
+    def top(self) -> float:
+        """How high the blank is over the ground, mm."""
+        v = self.profile[:, 0]
+        inside = (v >= self.ends[0]) & (v <= self.ends[1])
+        return float(self.profile[inside, 1].max())
+
+    def watched(self, progress: Progress) -> DevelopedGround:
+        """Return the same ground, which looks at another progress."""
+        return replace(self, progress=progress)
+
+    def band(self, low: float, high: float, beyond: float = 0.0) -> Region:
+        """Return the plane's area between two places along the straight lines, once around and `beyond` mm on either side."""
+        half = math.pi + beyond / self.least_radius
+        return sector(self.development, low, high, half)
+
+    def around(self) -> Region:
+        """Return the plane's area of the ground and of what is looked at around it."""
+        return self.band(self.ends[0] - AROUND, self.ends[1] + AROUND, AROUND)
+
+    def blank_over(self, z: float) -> Region:
+        """Return the plane's area of the ground, once around, that the blank is over a height on."""
+        v, high = self.profile.T
+        over = (high > z) & (v >= self.ends[0]) & (v <= self.ends[1])
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], over, [False]]).astype(int)))
+        step = float(v[1] - v[0])
+        return union_all(
+            [
+                self.band(
+                    max(float(v[a]) - step, self.ends[0]), min(float(v[b - 1]) + step, self.ends[1])
+                )
+                for a, b in edges.reshape(-1, 2).tolist()
+            ]
+        )
+
+    def over(self, z: float) -> Region:
+        """Return the plane's area over which the part reaches higher than a height."""
+        if z not in self.found:
+            self.progress.check()
+            self.found[z] = self.progress.aside(
+                lambda _: union_all(
+                    [*self._rings_over(z), *(each.over(z) for each in self.obstacles)]
+                )
+            )
+        return self.found[z]
+
+    def _rings_over(self, z: float) -> list[Region]:
+        """Return the bands over which what runs round reaches higher than a height."""
+        v0, h0, v1, h1 = self.rings[np.maximum(self.rings[:, 1], self.rings[:, 3]) > z].T
+        rise = np.where(h1 != h0, h1 - h0, 1.0)
+        at = v0 + (v1 - v0) * np.clip((z - h0) / rise, 0.0, 1.0)
+        start, end = np.where(h0 > z, v0, at), np.where(h1 > z, v1, at)
+        low, high = np.minimum(start, end), np.maximum(start, end)
+        order = np.argsort(low, kind="stable")
+        bands: list[tuple[float, float]] = []
+        for a, b in zip(low[order].tolist(), high[order].tolist(), strict=True):
+            if bands and a <= bands[-1][1] + LAP:
+                bands[-1] = (bands[-1][0], max(bands[-1][1], b))
+            else:
+                bands.append((a, b))
+        inside = [
+            (max(a, self.ends[0] - 2.0 * AROUND), min(b, self.ends[1] + 2.0 * AROUND))
+            for a, b in bands
+        ]
+        return [
+            self.band(a - LAP, b + LAP, 2.0 * AROUND) for a, b in inside if b > a - tolerance.SEW
+        ]
+
+    def free(self, z: float, tool: Tool, around: float, above: float) -> Region:
+        """Return the area that the envelope of a cutter may be in, its tip at a height: shank and holder keep `around` mm from the part
+        beside and `above` mm over it."""
+        obstacles = [self.over(z + SKIM)]
+        for z0, r0, _, r1 in tool.profile():
+            more = max(r0, r1) - tool.radius
+            height = z + max(SKIM, STEP * math.floor((z0 - above) / STEP))
+            if more > -around:
+                obstacles.append(self.over(height).offset(max(more + around, 0.0)))
+        return self.around().minus(union_all(obstacles))
+
+
+def sector(development: Development, low: float, high: float, half: float) -> Region:
+    """Return the plane's area between two places along the straight lines and two angles (rad) about the axis, left and right of its
+    middle."""
+    if development.half_turn == 0.0:
+        wide = half * development.radius
+        return Region.rectangle(-wide, low, wide, high)
+    count = max(8, math.ceil(half * math.sqrt(development.radius_at(np.array(high)) / CHORD)))
+    turn = np.linspace(-half, half, count)
+    rows = []
+    for v, turns in ((low, turn), (high, turn[::-1])):
+        on = np.column_stack([np.zeros(count), np.full(count, v), np.zeros(count)])
+        radius = development.radius_at(on[:, 1])
+        height = development.frame.to_local(development.to_world(on))[:, 2]
+        rows.append(development.from_cylindrical(radius, turns, height)[:, :2])
+    return region_of(shapely.Polygon(np.vstack(rows)).buffer(0.0))
+
+
+def ground_of(
+    development: Development,
+    ends: tuple[float, float],
+    mesh: Mesh,
+    obstacles: Sequence[tuple[tuple[int, ...], bool]],
+    rings: tuple[int, ...],
+    blank: Blank,
+    progress: Progress,
+) -> DevelopedGround:
+    """Return ground with what stands on it: sets of faces by their tags, and whether openings in them are no way down; `rings` are faces of
+    revolution that run round."""
+    margin = AROUND / float(development.radius_at(np.array(ends)).min())
+    made = []
+    for tags, closed in progress.each(obstacles):
+        corners = mesh.points[mesh.triangles[np.isin(mesh.face, tags)]]
+        flat = developed_triangles(corners, development, BELOW, margin)
+        made.append(GroundObstacle(corners=flat, closed=closed))
+    return DevelopedGround(
+        development=development,
+        ends=ends,
+        obstacles=tuple(made),
+        rings=_meridians(development, mesh, rings),
+        profile=blank_profile(development, ends, blank),
+        progress=progress,
+    )
+
+
+def _meridians(development: Development, mesh: Mesh, tags: tuple[int, ...]) -> Floats:
+    """Return the edges of faces that run round as pieces (k, 4) over the straight lines, each once."""
+    triangles = mesh.triangles[np.isin(mesh.face, tags)]
+    flat = development.to_local(mesh.points)
+    along = development.along_and_turn(flat)[0]
+    at = np.column_stack([along, flat[:, 2]]).round(ROUNDED)
+    edges = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    pieces = np.hstack([at[edges[:, 0]], at[edges[:, 1]]])
+    return np.unique(pieces[np.maximum(pieces[:, 1], pieces[:, 3]) > BELOW], axis=0)
+
+
+def blank_profile(development: Development, ends: tuple[float, float], blank: Blank) -> Floats:
+    """Return places along the straight lines and how high (k, 2) mm the blank is over the plane there; where it is not round about the
+    axis, everywhere as high as it gets."""
+    v = np.linspace(ends[0] - AROUND, ends[1] + AROUND, LINES)
+    seen = [_heights(development, v, blank, turn) for turn in TURNS]
+    if max(float(np.abs(s - seen[0]).max()) for s in seen) > SKIM:
+        shell = development.to_local(blank.frame.to_world(blank.shell()[0]))
+        return np.column_stack([v, np.full(len(v), float(shell[:, 2].max()))])
+    # Between two places the blank is at most as high as at the higher one of their neighbours.
+    near = np.pad(seen[0], 1, mode="edge")
+    return np.column_stack([v, np.maximum(np.maximum(near[:-2], near[2:]), seen[0])])
+
+
+def _heights(development: Development, v: Floats, blank: Blank, turn: float) -> Floats:
+    on = np.column_stack([np.zeros(len(v)), v, np.full(len(v), BELOW)])
+    local = development.frame.to_local(development.to_world(on))
+    flat = development.from_cylindrical(
+        np.hypot(local[:, 0], local[:, 1]), np.full(len(v), turn), local[:, 2]
+    )
+    start, out = development.to_world(flat), development.normals(flat)[0]
+    met = blank.intervals(blank.frame.to_local(start), blank.frame.local_direction(out))
+    ahead = met.clipped(0.0, math.inf)
+    return np.asarray(BELOW + ahead.tops(0.0))

@@ -1,0 +1,54 @@
+"""Routes of casings: what is planned on the least of them, in which order, and from which blank."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from subjects import own, part_of, until
+
+
+def routed():
+    return until("casing", "route")
+
+
+def test_its_blank_is_what_turning_leaves():
+    session = routed()
+    outline = session.blank.outline
+    # Bore and ground of the short ring are done, and a ring stands as high as the farthest corner of its bosses.
+    assert np.isclose(outline[:, 0], 21.0).sum() == 2
+    assert np.isclose(outline[:, 0], 24.0).sum() >= 2
+    between = (outline[:, 1] > 4.5) & (outline[:, 1] < 21.5)
+    assert outline[between, 0].max() >= math.hypot(27.0, 3.5) - 1e-6
+
+
+def test_bottoms_are_roughed_first_and_bosses_go_along_their_own_normals():
+    session = routed()
+    process = session.process
+    assert process.operations[0].strategy == "plane.rough"
+    tops = [o for o in process.operations if o.kind == "land"]
+    part, frame = part_of(own("casing")[0]), session.setups[0].frame
+    assert len(tops) == 2
+    for o in tops:
+        normal = frame.local_direction(part.graph().normal[o.faces[0] - 1])
+        assert np.allclose(o.direction, normal, atol=1e-9)
+
+
+def test_every_boss_gets_its_top_and_sides_and_the_hole_is_drilled_along_its_axis():
+    process = routed().process
+    sides = {o.feature for o in process.operations if o.strategy == "surface.waterline"}
+    tops = {o.feature for o in process.operations if o.kind == "land"}
+    assert sides == tops and len(tops) == 2
+    drilled = [o for o in process.operations if o.kind == "drill"]
+    assert len(drilled) == 1 and abs(drilled[0].direction[2]) < 1e-6
+
+
+def test_passes_on_the_bottom_lie_no_farther_apart_than_its_bend_allows():
+    bottoms = [o for o in routed().process.operations if o.kind == "floor"]
+    # Half a stepover w leaves w^2 / 8 r: 0.01 mm on a radius of 24.
+    assert bottoms and all(o.data.width**2 / (8.0 * 24.0) <= 0.0101 for o in bottoms)
+
+
+def test_what_must_come_turned_is_said():
+    assert "route.turned" in {f.code for f in routed().process.findings}

@@ -1,0 +1,109 @@
+"""Ground laid flat with what stands on it: where cutters may go, layers over it, and what they leave."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from milling import mill
+from trunnion.geometry.development import Development
+from trunnion.geometry.frame import WORLD
+from trunnion.geometry.mesh import Mesh
+from trunnion.model.blank import Revolved
+from trunnion.plan.development.drives import layer_heights, ring_of, tangent_reach
+from trunnion.plan.development.ground import DevelopedGround, ground_of
+from trunnion.progress import NO_PROGRESS
+
+RADIUS, LENGTH, WIDE, HIGH = 100.0, 60.0, 20.0, 8.0
+BOSS = 7
+
+
+def ground() -> DevelopedGround:
+    """Return a cylinder with a flange over its lower end and a square block that stands on it at x, under a turned ring."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 361)
+    rows = [(RADIUS, 0.0), (RADIUS + 12.0, 0.0)]
+    flange = np.array(
+        [[(r * math.cos(t), r * math.sin(t), z) for t in turn] for r, z in rows]
+    ).reshape(-1, 3)
+    n = np.arange(360)
+    triangles = np.vstack(
+        [np.column_stack([n, n + 1, n + 361]), np.column_stack([n + 1, n + 362, n + 361])]
+    )
+    half, low, high = 0.5 * WIDE, 30.0 - 0.5 * WIDE, 30.0 + 0.5 * WIDE
+    top = RADIUS + HIGH
+    block = np.array(
+        [[r, y, z] for r in (RADIUS - 5.0, top) for y in (-half, half) for z in (low, high)]
+    )
+    sides = [[0, 1, 5], [0, 5, 4], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 3, 7], [1, 7, 5]]
+    faces = np.array([*sides, [4, 5, 7], [4, 7, 6]]) + len(flange)
+    mesh = Mesh(
+        points=np.vstack([flange, block]),
+        triangles=np.vstack([triangles, faces]).astype(np.int64),
+        face=np.concatenate([np.full(len(triangles), 1), np.full(len(faces), BOSS)]),
+    )
+    blank = Revolved(
+        frame=WORLD,
+        outline=np.array(
+            [
+                [90.0, 0.0],
+                [100.0, 0.0],
+                [100.0, 18.0],
+                [109.0, 18.0],
+                [109.0, 42.0],
+                [100.0, 42.0],
+                [100.0, 60.0],
+                [90.0, 60.0],
+            ]
+        ),
+        material="EN AW-7075",
+        density=2.8,
+    )
+    development = Development(frame=WORLD, radius=RADIUS, height=0.0, slope=0.0, middle=0.0)
+    return ground_of(development, (0.0, LENGTH), mesh, [((BOSS,), True)], (1,), blank, NO_PROGRESS)
+
+
+def test_a_block_stands_on_the_ground_as_wide_as_it_is_seen_from_the_axis() -> None:
+    area = ground().over(4.0)
+    block = max(area.split(), key=lambda r: float(r.contains([[0.0, 30.0]])[0]))
+    (x0, y0), (x1, y1) = block.box()
+    # Its sides are parallel: higher up they take less of the angle about the axis.
+    foot = RADIUS * math.asin(0.5 * WIDE / (RADIUS + 4.0))
+    assert (x0, x1) == pytest.approx((-foot, foot), abs=0.1)
+    assert (y0, y1) == pytest.approx((20.0, 40.0), abs=0.1)
+
+
+def test_over_its_top_nothing_of_it_is_in_the_way() -> None:
+    rim = math.hypot(RADIUS + HIGH, 0.5 * WIDE) - RADIUS
+    assert not ground().over(rim + 0.01).contains([[9.2, 30.0]])[0]
+    assert ground().over(rim - 0.05).contains([[9.2, 30.0]])[0]
+
+
+def test_a_flange_is_in_the_way_all_round_and_beyond_where_the_plane_ends() -> None:
+    at = np.array([[u, 0.0] for u in (-330.0, -100.0, 200.0, 330.0)])
+    assert ground().over(5.0).contains(at).all()
+    assert not ground().over(5.0).contains(at + [0.0, 2.0]).any()
+
+
+def test_the_ring_of_the_blank_is_what_is_milled() -> None:
+    (x0, y0), (x1, y1) = ring_of(ground()).box()
+    assert (y0, y1) == pytest.approx((17.0, 43.0), abs=0.8)
+    assert x1 - x0 == pytest.approx(2.0 * math.pi * RADIUS, abs=0.1)
+
+
+def test_shank_and_holder_keep_from_what_is_high_beside_the_cutter() -> None:
+    tool = mill(10.0)
+    free = ground().free(0.0, tool, 1.0, 1.0)
+    assert free.contains([[60.0, 30.0]])[0] and not free.contains([[0.0, 30.0]])[0]
+
+
+def test_layers_end_over_each_boss_with_its_allowance() -> None:
+    assert layer_heights(10.0, 0.3, 4.0, (8.0, 7.99), 0.3) == pytest.approx(
+        [8.3, 8.3 - 8.0 / 2.0, 0.3]
+    )
+
+
+def test_a_disc_finishes_bent_ground_as_far_as_it_is_near_to_it() -> None:
+    reach = tangent_reach(ground())
+    assert math.hypot(RADIUS, reach) - RADIUS == pytest.approx(0.01, rel=1e-3)

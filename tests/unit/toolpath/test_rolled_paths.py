@@ -1,0 +1,98 @@
+"""Paths over a bottom laid flat, rolled back onto it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from trunnion.findings import Refused
+from trunnion.geometry.development import Development
+from trunnion.geometry.frame import WORLD
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
+from trunnion.toolpath.motion.rolled import laid_flat, rolled
+
+GROUND = Development(frame=WORLD, radius=100.0, height=0.0, slope=0.0, middle=0.0)
+
+
+def flat_path(rows: list[tuple[float, float, float, Motion]], centre: object = None) -> Toolpath:
+    n = len(rows)
+    motion = np.array([int(r[3]) for r in rows])
+    return Toolpath(
+        position=np.array([r[:3] for r in rows]),
+        axis=np.tile([0.0, 0.0, 1.0], (n, 1)),
+        motion=motion,
+        centre=np.full((n, 3), np.nan) if centre is None else np.asarray(centre, dtype=float),
+        feed=np.where(motion == Motion.RAPID, 0.0, 500.0),
+        mark=np.full(n, Mark.CUT),
+    )
+
+
+ROUND = flat_path(
+    [(0.0, 5.0, 20.0, Motion.RAPID), (0.0, 5.0, 0.0, Motion.LINE), (60.0, 5.0, 0.0, Motion.LINE)]
+)
+
+
+def test_a_pass_along_the_circles_keeps_to_the_ground_within_the_chord_error() -> None:
+    path = rolled(ROUND, GROUND, WORLD, 0.002)
+    on = path.position[path.motion == Motion.LINE]
+    middle = 0.5 * (on[1:] + on[:-1])
+    assert np.hypot(on[:, 0], on[:, 1]) == pytest.approx(100.0)
+    assert 0.0 < (100.0 - np.hypot(middle[:, 0], middle[:, 1])).max() <= 0.002
+    assert on[-1] == pytest.approx([100.0 * np.cos(0.6), 100.0 * np.sin(0.6), 5.0])
+
+
+def test_the_tool_is_the_grounds_normal_everywhere() -> None:
+    path = rolled(ROUND, GROUND, WORLD, 0.002)
+    out = path.position * [1.0, 1.0, 0.0]
+    assert path.axis == pytest.approx(out / np.linalg.norm(out, axis=1, keepdims=True))
+
+
+def test_rapids_over_half_a_turn_stay_outside() -> None:
+    path = rolled(
+        flat_path([(0.0, 0.0, 20.0, Motion.RAPID), (300.0, 0.0, 20.0, Motion.RAPID)]),
+        GROUND,
+        WORLD,
+        0.01,
+    )
+    middle = 0.5 * (path.position[1:] + path.position[:-1])
+    assert np.hypot(middle[:, 0], middle[:, 1]).min() > 119.6
+
+
+def test_an_arc_becomes_chords_of_its_circle() -> None:
+    path = flat_path(
+        [(10.0, 0.0, 2.0, Motion.RAPID), (-10.0, 0.0, 2.0, Motion.ARC_CCW)],
+        [[np.nan] * 3, [0.0, 0.0, 2.0]],
+    )
+    flat = GROUND.to_local(rolled(path, GROUND, WORLD, 0.001).position)
+    assert np.hypot(flat[:, 0], flat[:, 1]) == pytest.approx(10.0)
+    assert flat[:, 1].max() == pytest.approx(10.0, abs=1e-3)
+
+
+def test_what_was_rolled_is_laid_flat_again() -> None:
+    path = rolled(ROUND, GROUND, WORLD, 0.002)
+    back = laid_flat(path, GROUND, WORLD)
+    assert back.position[[0, -1]] == pytest.approx(ROUND.position[[0, -1]], abs=1e-9)
+    assert (back.axis == [0.0, 0.0, 1.0]).all()
+
+
+def test_a_path_past_half_a_turn_is_no_cut_all_the_way_back() -> None:
+    path = rolled(
+        flat_path([(310.0, 0.0, 0.0, Motion.RAPID), (330.0, 0.0, 0.0, Motion.LINE)]),
+        GROUND,
+        WORLD,
+        0.01,
+    )
+    back = laid_flat(path, GROUND, WORLD)
+    jumps = np.abs(np.diff(back.position[:, 0])) > 100.0
+    assert jumps.sum() == 1 and back.motion[1:][jumps] == [Motion.RAPID]
+
+
+class Drilling:
+    """As much of a path with a drilling cycle as is looked at."""
+
+    cycles = (object(),)
+
+
+def test_holes_are_refused() -> None:
+    with pytest.raises(Refused, match="each its own direction"):
+        rolled(Drilling(), GROUND, WORLD, 0.01)
