@@ -1,0 +1,200 @@
+"""Paths of a leaning tool around a part: passes linked where they lie side by side, else round a sphere that holds blank and fixtures.
+
+A tool that is nowhere slimmer than below stays clear of everything on its way out along its axis if it is clear before: it is fed out by a
+little, goes on at rapid until it stands outside of the sphere, turns round it, and comes in the same way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.sphere import angle_between
+from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
+from trunnion.plan.clearance import ClearanceQuery
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from trunnion.toolpath.motion.reorient import ClearanceSphere, turn
+
+Retreat = Callable[[Floats, Floats], float]
+"""From a tip and an axis (3,) to how far in mm a tool is fed out along its axis before it goes on at rapid."""
+
+POSE = ("tip", "axis")
+"""What a pass has of each pose."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SphereLinkParameters:
+    """How passes are linked: those that begin within `near` mm of the end of the one before, with an axis that turns by less than `turn`
+    rad, straight at feed; the others round the sphere. `feed` mm/min cuts, `link_feed` links."""
+
+    near: float
+    turn: float
+    feed: float
+    link_feed: float
+    sphere: ClearanceSphere
+    retreat: Retreat
+    query: ClearanceQuery
+
+
+def linked_round(
+    passes: Sequence[Pass], parameters: SphereLinkParameters, groups: Sequence[int] | None = None
+) -> Toolpath:
+    """Return the path that cuts passes in their order, without the way to its beginning and from its end: a rapid leads to its first pose,
+    outside along the axis, and another one to its last. `groups` (one a pass): only passes of one group are linked straight."""
+    if not passes:
+        return EMPTY
+    blocks = _Blocks(parameters)
+    straight = _straight(passes, parameters, groups or [0] * len(passes))
+    for k, one in enumerate(passes):
+        if k and straight[k - 1]:
+            blocks.add(one.tip[:1], one.axis[:1], parameters.link_feed, Mark.LINK)
+        else:
+            if k:
+                blocks.out(passes[k - 1])
+                blocks.round(passes[k - 1].axis[-1], one.tip[0], one.axis[0])
+            blocks.come(one)
+        blocks.add(one.tip[1:], one.axis[1:], parameters.feed, Mark.CUT)
+    blocks.out(passes[-1])
+    return blocks.path()
+
+
+def copied(path: Toolpath, copies: Sequence[float], sphere: ClearanceSphere) -> Toolpath:
+    """Return a path and its copies turned about z by angles (rad), one after the other, led round the sphere from each to the next one,
+    from an upright tool over the sphere and back to it."""
+    if not len(path):
+        return path
+    parts: list[Toolpath] = []
+    top = sphere.centre + sphere.radius * UPRIGHT
+    here, axis = top, UPRIGHT
+    for angle in copies:
+        one = _turned(path, angle)
+        parts.append(_way(here, axis, one.position[0], one.axis[0], sphere))
+        parts.append(one)
+        here, axis = one.position[-1], one.axis[-1]
+    parts.append(_way(here, axis, top, UPRIGHT, sphere))
+    return Toolpath.join([p for p in parts if len(p)])
+
+
+def _way(
+    start: Floats, start_axis: Floats, end: Floats, end_axis: Floats, sphere: ClearanceSphere
+) -> Toolpath:
+    """Return the rapids from a pose to another one round the sphere, neither of them among these."""
+    tips, axes = [sphere.above(start, start_axis)], [start_axis]
+    directions = _over(start_axis, end_axis)
+    tips += [sphere.centre + sphere.radius * a for a in directions]
+    axes += list(directions)
+    tips.append(sphere.above(end, end_axis))
+    axes.append(end_axis)
+    return _rapids(np.array(tips), np.array(axes))
+
+
+def _over(first: Floats, last: Floats) -> Floats:
+    """Return directions (k, 3) from one to another, over the top where the shortest way would lean more than either end."""
+    turned = turn(first, last)
+    if turned[:, 2].min() < min(first[2], last[2]) - tolerance.PARAMETRIC:
+        turned = np.vstack([turn(first, UPRIGHT), turn(UPRIGHT, last)[1:]])
+    return turned
+
+
+def _rapids(tips: Floats, axes: Floats) -> Toolpath:
+    """Return rapids through poses, those left out that go nowhere."""
+    moved = np.linalg.norm(np.diff(tips, axis=0), axis=1) + np.linalg.norm(
+        np.diff(axes, axis=0), axis=1
+    )
+    kept = np.concatenate([[True], moved > tolerance.SHORT_MOVE])
+    n = int(kept.sum())
+    return Toolpath(
+        position=tips[kept],
+        axis=axes[kept],
+        motion=np.full(n, Motion.RAPID),
+        centre=np.full((n, 3), np.nan),
+        feed=np.zeros(n),
+        mark=np.full(n, Mark.RETRACT),
+    )
+
+
+def _turned(path: Toolpath, angle: float) -> Toolpath:
+    if angle == 0.0:
+        return path
+    c, s = math.cos(angle), math.sin(angle)
+    matrix = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return replace(path, position=path.position @ matrix, axis=path.axis @ matrix)
+
+
+def _straight(
+    passes: Sequence[Pass], parameters: SphereLinkParameters, groups: Sequence[int]
+) -> list[bool]:
+    """Return for each pass but the last whether the next one is reached straight at feed."""
+    if len(passes) < 2:
+        return []
+    ends, end_axes = (np.array([getattr(p, name)[-1] for p in passes[:-1]]) for name in POSE)
+    starts, axes = (np.array([getattr(p, name)[0] for p in passes[1:]]) for name in POSE)
+    near = np.linalg.norm(starts - ends, axis=1) <= parameters.near
+    near &= angle_between(end_axes, axes) <= parameters.turn
+    near &= np.diff(groups) == 0
+    rows = np.flatnonzero(near)
+    if len(rows):
+        near[rows] = parameters.query(
+            starts[rows], axes[rows], start_tip=ends[rows], start_axis=end_axes[rows]
+        )
+    return [bool(v) for v in near]
+
+
+class _Blocks:
+    """A path in the making."""
+
+    def __init__(self, parameters: SphereLinkParameters) -> None:
+        self._parameters = parameters
+        self._parts: list[tuple[Floats, Floats, float, Mark]] = []
+
+    def add(self, tips: Floats, axes: Floats, feed: float, mark: Mark) -> None:
+        """Add moves to tips with axes (k, 3) at a feed, 0 for rapids."""
+        if len(tips):
+            self._parts.append((tips, axes, feed, mark))
+
+    def come(self, one: Pass) -> None:
+        """Bring the tool to the start of a pass along its axis: at rapid, then at feed."""
+        sphere, tip, axis = self._parameters.sphere, one.tip[0], one.axis[0]
+        outside = sphere.above(tip, axis)
+        lift = self._parameters.retreat(tip, axis)
+        self.add(outside[None], axis[None], 0.0, Mark.RETRACT)
+        self.add((tip + lift * axis)[None], axis[None], 0.0, Mark.RETRACT)
+        self.add(tip[None], axis[None], self._parameters.link_feed, Mark.LEAD)
+
+    def out(self, one: Pass) -> None:
+        """Bring the tool off the end of a pass along its axis: at feed, then at rapid to outside the sphere."""
+        tip, axis = one.tip[-1], one.axis[-1]
+        lift = self._parameters.retreat(tip, axis)
+        self.add((tip + lift * axis)[None], axis[None], self._parameters.link_feed, Mark.LEAD)
+        self.add(self._parameters.sphere.above(tip, axis)[None], axis[None], 0.0, Mark.RETRACT)
+
+    def round(self, axis: Floats, tip: Floats, next_axis: Floats) -> None:
+        """Turn the tool round the sphere from an axis to another one."""
+        sphere = self._parameters.sphere
+        directions = _over(axis, next_axis)
+        self.add(sphere.centre + sphere.radius * directions, directions, 0.0, Mark.RETRACT)
+
+    def path(self) -> Toolpath:
+        """Return the path; moves that go nowhere are left out."""
+        count = [len(p[0]) for p in self._parts]
+        position, axis = (np.concatenate([p[k] for p in self._parts]) for k in (0, 1))
+        feed = np.repeat([p[2] for p in self._parts], count)
+        mark = np.repeat([int(p[3]) for p in self._parts], count)
+        moved = np.linalg.norm(np.diff(position, axis=0), axis=1) + np.linalg.norm(
+            np.diff(axis, axis=0), axis=1
+        )
+        kept = np.concatenate([[True], moved > tolerance.SHORT_MOVE])
+        n = int(kept.sum())
+        return Toolpath(
+            position=position[kept],
+            axis=axis[kept],
+            motion=np.where(feed[kept] > 0.0, Motion.LINE, Motion.RAPID),
+            centre=np.full((n, 3), np.nan),
+            feed=feed[kept],
+            mark=mark[kept],
+        )
