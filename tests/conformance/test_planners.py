@@ -9,6 +9,7 @@ import pytest
 from subjects import PLANNERS, check_cancel, check_settings, is_one_line, own, until
 from trunnion import registry
 from trunnion.findings import Refused
+from trunnion.model.blank import Box
 from trunnion.model.process import ProcessTree
 from trunnion.pipeline.planning.scene import SessionContext, SetupScene
 from trunnion.pipeline.steps import step_named
@@ -194,7 +195,13 @@ def test_a_drive_that_it_does_not_make_is_refused_in_words(name):
 def test_a_blank_that_no_machine_takes_is_said(name):
     engine, session = own(name)[0], until(name, "blank")
     blank = session.blank
-    large = replace(blank, high=blank.low + 9e4)
+    large = Box(
+        frame=blank.frame,
+        low=blank.low,
+        high=blank.low + 9e4,
+        material=blank.material,
+        density=blank.density,
+    )
     after = (
         step_named("route").work(replace(session, blank=large), engine.context, NO_PROGRESS).session
     )

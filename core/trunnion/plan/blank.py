@@ -1,4 +1,4 @@
-"""The blank: a box, a round bar or a turned envelope around the part with an allowance on each side, or what a file holds."""
+"""The blank: a box, a round bar or a turned envelope around the part, one that is turned to size, or what a file holds."""
 
 from __future__ import annotations
 
@@ -7,14 +7,22 @@ import numpy as np
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.meridian_outline import meridian_outline
 from trunnion.geometry.turned_outline import outer_meridian
 from trunnion.model.blank import AXES, Blank, Box, Faceted, Revolved
 from trunnion.model.material import Material
 from trunnion.settings import setting, settings
 from trunnion.tolerance import CHORD, COINCIDENT
 
-AUTOMATIC, BOX, CYLINDER, TURNED, FILE = "auto", "box", "cylinder", "turned", "file"
-KINDS = (AUTOMATIC, BOX, CYLINDER, TURNED, FILE)
+AUTOMATIC, BOX, CYLINDER, TURNED, FINISHED, FILE = (
+    "auto",
+    "box",
+    "cylinder",
+    "turned",
+    "finish-turned",
+    "file",
+)
+KINDS = (AUTOMATIC, BOX, CYLINDER, TURNED, FINISHED, FILE)
 LEVELS = 64
 """Bands along the axis that a turned envelope follows the part in: of 2 mm on a wheel of 120 mm."""
 DECIMALS = 7
@@ -29,8 +37,8 @@ class BlankSettings:
         AUTOMATIC,
         choices=KINDS,
         label="Kind of blank",
-        help="A box, a round bar or a turned envelope around the part, or the solid of a file; auto: what parts of the family are usually "
-        "cut from, a box for most.",
+        help="A box, a round bar or a turned envelope around the part, a blank whose turned faces are finished, bore included, or the "
+        "solid of a file; auto: what parts of the family are usually cut from, a box for most.",
     )
     side: float = setting(
         5.0,
@@ -156,6 +164,26 @@ def make_envelope(
     return Revolved(
         frame=frame,
         outline=np.round(_straightened(outline), DECIMALS),
+        material=material.name,
+        density=material.density,
+    )
+
+
+def make_finish_turned(
+    frame: Frame, points: Floats, triangles: Ints, face: Ints, material: Material
+) -> Revolved:
+    """Return the blank whose turned faces are finished: what the part's triangles (t, 3) of points (v, 3) with tags `face` (t,), given in
+    `frame`, sweep about its z.
+
+    Raises `BadInput` where the part is in pieces about that axis.
+    """
+    try:
+        outline = meridian_outline(points, triangles, face)
+    except ValueError as reason:
+        raise BadInput(f"no finish-turned blank: {reason}; choose blank.kind = turned") from None
+    return Revolved(
+        frame=frame,
+        outline=np.round(outline, DECIMALS),
         material=material.name,
         density=material.density,
     )

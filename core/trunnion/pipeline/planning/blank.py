@@ -20,12 +20,14 @@ from trunnion.plan.blank import (
     AUTOMATIC,
     CYLINDER,
     FILE,
+    FINISHED,
     TURNED,
     BlankSettings,
     make_bar,
     make_blank,
     make_envelope,
     make_faceted,
+    make_finish_turned,
 )
 from trunnion.progress import Progress
 from trunnion.recognize.contract import usual_blank
@@ -49,6 +51,10 @@ def blank_of(session: Session, context: Context, frame: Frame, progress: Progres
     if kind == TURNED:
         mesh = context.part.mesh()
         return make_envelope(frame, frame.to_local(mesh.points), mesh.triangles, material, settings)
+    if kind == FINISHED:
+        mesh = context.part.mesh()
+        points = frame.to_local(mesh.points)
+        return make_finish_turned(frame, points, mesh.triangles, mesh.face, material)
     if kind == CYLINDER:
         points = frame.to_local(context.part.mesh().points)
         return make_bar(frame, low, high, points, material, settings)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.blank import Blank
 from trunnion.plan.channel.blade_channel import BladeChannel
 from trunnion.plan.channel.meridian import cylindrical
@@ -25,7 +25,7 @@ class ChannelDrive:
     `channels`: those of the period; `in_channels` whether the operation goes through them. `copies` (rad): the turns about the axis that
     bring the period to all of its places, the first one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the
     shroud and towards the hub, where passes begin and end. `inward` says how deep below the blank's surface points (k, 3) lie, negative
-    outside. `blank` is the blank itself.
+    outside. `blank` is the blank itself; `holds` says which tool axes (k, 3) the machine can hold, `fixed` whether fixtures stand there.
     """
 
     surface: SurfaceDrive
@@ -34,6 +34,8 @@ class ChannelDrive:
     blank: Blank
     inward: Callable[[Floats], Floats]
     in_channels: bool
+    holds: Callable[[Floats], Bools]
+    fixed: bool = False
     tips: tuple[int, ...] = ()
     roots: tuple[int, ...] = ()
 

@@ -89,6 +89,8 @@ def channel_driven(
         copies=wheel.copies,
         blank=blank,
         inward=scene.once(("blank depth",), lambda: BlankDepth.of(blank, rotor)),
+        holds=around.holds,
+        fixed=bool(setup.fixtures or scene.fixtures),
         tips=tips,
         roots=roots,
     )

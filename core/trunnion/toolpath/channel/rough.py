@@ -26,7 +26,10 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits
 from trunnion.toolpath.contact_passes.blank_clearance import body_outside
 from trunnion.toolpath.contact_passes.channel_finish import (
+    CLOSE,
     OFF,
+    QUICK,
+    air_links,
     out_of_channel,
     outside_query,
     passes_along,
@@ -74,7 +77,7 @@ class ChannelRoughSettings:
         help="How far the axis may turn on a mm of the cutter's way.",
     )
     chord: float = setting(
-        0.01,
+        0.03,
         unit="mm",
         low=0.0001,
         high=0.5,
@@ -123,10 +126,12 @@ def rough(
         near=NEAR * data.width,
         turn=LINK_TURN,
         feed=data.feed,
-        link_feed=data.feed,
+        link_feed=QUICK * data.feed,
+        close=CLOSE + data.depth,
         sphere=sphere,
         retreat=out_of_channel(drive, settings.safety),
         query=query,
+        air=air_links(drive, tool),
     )
     lean = math.radians(tool.taper_angle)
     paths, findings = [], []

@@ -16,8 +16,9 @@ from trunnion.model.tool import Tool
 from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.toolpath.contact_passes.air_links import AirLinks
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits, thickened
-from trunnion.toolpath.contact_passes.blank_clearance import body_outside
+from trunnion.toolpath.contact_passes.blank_clearance import body_outside, tool_outside
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.leaning_passes import PointMilledPasses, milled
 from trunnion.toolpath.contact_passes.open_axes import open_axes
@@ -41,6 +42,10 @@ LINK_TURN = math.radians(25.0)
 """Largest turn of the axis on a straight link."""
 NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached straight."""
+QUICK, CLOSE = 3.0, 0.5
+"""Times the feed of cuts: the feed of links that go where stock may stand beside them; and how far (mm) before material that ends."""
+AIR = 2.0
+"""mm that a tool stays off the blank while it goes at rapid over it: its axes may turn one before the other."""
 SMALLEST_LEFTOVER = 0.003
 """Share of the passes: less than this is the rim of an area."""
 
@@ -115,10 +120,12 @@ def finished(
         near=NEAR * stepover,
         turn=LINK_TURN,
         feed=data.feed,
-        link_feed=data.feed,
+        link_feed=QUICK * data.feed,
+        close=CLOSE + data.depth,
         sphere=sphere,
         retreat=out_of_channel(drive, safety),
         query=queries[-1],
+        air=air_links(drive, tool),
     )
     path = linked_round(done.passes, parameters)
     return Planned(path=copied(path, drive.copies, sphere), findings=(*findings, *left))
@@ -168,6 +175,16 @@ def out_of_channel(drive: ChannelDrive, safety: float) -> Retreat:
     """Return how far a tool is fed out along its axis: as far as blades are high, and a safety distance."""
     deep = float(drive.channels[0].meridian.height(np.linspace(0.0, 1.0, 9)).max())
     return lambda tip, axis: deep + safety
+
+
+def air_links(drive: ChannelDrive, tool: Tool) -> AirLinks | None:
+    """Return the links of a tool over the blank; None where fixtures stand that it knows nothing of."""
+    if drive.fixed:
+        return None
+    return AirLinks(
+        outside=tool_outside(tool, drive.inward, AIR),
+        holds=lambda tip, axis: drive.holds(axis),
+    )
 
 
 def _some(lines: Sequence[Contacts]) -> tuple[Floats, Floats]:

@@ -17,8 +17,6 @@ from trunnion.toolpath.contact_passes.contacts import Contacts
 
 SHORT = 3
 """Contacts that a line has at least."""
-FALLEN = 3
-"""By how much more lines lie where a channel is too wide for those that there are: each gets one to both sides."""
 STEP = 0.05
 """Share of the way from hub to shroud over which a wall's lean is taken."""
 CLEARANCE, TOE_CLEARANCE = 0.05, 0.03
@@ -43,7 +41,7 @@ def lines_between(
     whole = width / span
     sets = [[line for v in inner for line in _runs(surface, u, v, known)]]
     count = max(1, math.ceil(float(whole[known].min()) / stepover))
-    places, wide = [(k + 0.5) / count for k in range(count)], known
+    places, wide = [k / count for k in range(1, count)], known
     while True:
         some = []
         for v in places:
@@ -55,8 +53,8 @@ def lines_between(
             return [s for s in sets if s]
         # A place more at either end: what lies beside is cleared there.
         wide |= known & (np.append(wide[1:], False) | np.append(False, wide[:-1]))
-        places = sorted((k + s) / count for k in range(count) for s in (1.0 / 6.0, 5.0 / 6.0))
-        count *= FALLEN
+        places = [(k + 0.5) / count for k in range(count)]
+        count *= 2
 
 
 def hub_of(channel: BladeChannel) -> Surface:

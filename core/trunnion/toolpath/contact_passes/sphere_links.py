@@ -1,4 +1,5 @@
-"""Paths of a leaning tool around a part: passes linked where they lie side by side, else round a sphere that holds blank and fixtures.
+"""Paths of a leaning tool around a part: passes linked where they lie side by side, through the air over the blank, or round a sphere that
+holds blank and fixtures.
 
 A tool that is nowhere slimmer than below stays clear of everything on its way out along its axis if it is clear before: it is fed out by a
 little, goes on at rapid until it stands outside of the sphere, turns round it, and comes in the same way.
@@ -17,6 +18,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.plan.clearance import ClearanceQuery
+from trunnion.toolpath.contact_passes.air_links import AirLink, AirLinks
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.motion.reorient import ClearanceSphere, turn
 
@@ -30,7 +32,8 @@ POSE = ("tip", "axis")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SphereLinkParameters:
     """How passes are linked: those that begin within `near` mm of the end of the one before, with an axis that turns by less than `turn`
-    rad, straight at feed; the others round the sphere. `feed` mm/min cuts, `link_feed` links."""
+    rad, straight at feed; others through the air over the blank, where `air` finds it clear, else round the sphere. `feed` mm/min cuts, and
+    goes the last `close` mm to a pass; `link_feed` links."""
 
     near: float
     turn: float
@@ -39,6 +42,8 @@ class SphereLinkParameters:
     sphere: ClearanceSphere
     retreat: Retreat
     query: ClearanceQuery
+    close: float = 1.0
+    air: AirLinks | None = None
 
 
 def linked_round(
@@ -50,9 +55,15 @@ def linked_round(
         return EMPTY
     blocks = _Blocks(parameters)
     straight = _straight(passes, parameters, groups or [0] * len(passes))
+    over = _over_blank(passes, parameters, straight)
     for k, one in enumerate(passes):
+        link = over[k - 1] if k else None
         if k and straight[k - 1]:
-            blocks.add(one.tip[:1], one.axis[:1], parameters.link_feed, Mark.LINK)
+            blocks.add(one.tip[:1], one.axis[:1], parameters.feed, Mark.LINK)
+        elif link is not None:
+            blocks.off(passes[k - 1], link.tip[0])
+            blocks.add(link.tip[1:], link.axis[1:], 0.0, Mark.RETRACT)
+            blocks.down(one, link.tip[-1])
         else:
             if k:
                 blocks.out(passes[k - 1])
@@ -145,6 +156,26 @@ def _straight(
     return [bool(v) for v in near]
 
 
+def _over_blank(
+    passes: Sequence[Pass], parameters: SphereLinkParameters, straight: Sequence[bool]
+) -> list[AirLink | None]:
+    """Return for each pass but the last the link through the air to the next one, None where there is none or none is needed."""
+    found: list[AirLink | None] = [None] * len(straight)
+    rows = [k for k, near in enumerate(straight) if not near]
+    if parameters.air is None or not rows:
+        return found
+    ends, starts = (
+        (
+            np.array([passes[k + after].tip[place] for k in rows]),
+            np.array([passes[k + after].axis[place] for k in rows]),
+        )
+        for after, place in ((0, -1), (1, 0))
+    )
+    for k, link in zip(rows, parameters.air.between(ends, starts), strict=True):
+        found[k] = link
+    return found
+
+
 class _Blocks:
     """A path in the making."""
 
@@ -158,20 +189,33 @@ class _Blocks:
             self._parts.append((tips, axes, feed, mark))
 
     def come(self, one: Pass) -> None:
-        """Bring the tool to the start of a pass along its axis: at rapid, then at feed."""
-        sphere, tip, axis = self._parameters.sphere, one.tip[0], one.axis[0]
-        outside = sphere.above(tip, axis)
-        lift = self._parameters.retreat(tip, axis)
-        self.add(outside[None], axis[None], 0.0, Mark.RETRACT)
-        self.add((tip + lift * axis)[None], axis[None], 0.0, Mark.RETRACT)
-        self.add(tip[None], axis[None], self._parameters.link_feed, Mark.LEAD)
+        """Bring the tool to the start of a pass along its axis, from outside of the sphere."""
+        outside = self._parameters.sphere.above(one.tip[0], one.axis[0])
+        self.add(outside[None], one.axis[:1], 0.0, Mark.RETRACT)
+        self.down(one, outside)
 
     def out(self, one: Pass) -> None:
-        """Bring the tool off the end of a pass along its axis: at feed, then at rapid to outside the sphere."""
-        tip, axis = one.tip[-1], one.axis[-1]
-        lift = self._parameters.retreat(tip, axis)
-        self.add((tip + lift * axis)[None], axis[None], self._parameters.link_feed, Mark.LEAD)
-        self.add(self._parameters.sphere.above(tip, axis)[None], axis[None], 0.0, Mark.RETRACT)
+        """Bring the tool off the end of a pass along its axis, to outside of the sphere."""
+        self.off(one, self._parameters.sphere.above(one.tip[-1], one.axis[-1]))
+
+    def down(self, one: Pass, start: Floats) -> None:
+        """Bring the tool from a tip (3,) above the start of a pass along its axis: at rapid, at the feed of links, at last that of cuts."""
+        p, tip, axis = self._parameters, one.tip[0], one.axis[0]
+        above = float((start - tip) @ axis)
+        for lift, feed, mark in (
+            (p.retreat(tip, axis), 0.0, Mark.RETRACT),
+            (p.close, p.link_feed, Mark.LEAD),
+            (0.0, p.feed, Mark.LEAD),
+        ):
+            if lift < above or lift == 0.0:
+                self.add((tip + lift * axis)[None], axis[None], feed, mark)
+
+    def off(self, one: Pass, end: Floats) -> None:
+        """Bring the tool off the end of a pass along its axis to a tip (3,): at the feed of links, then at rapid."""
+        p, tip, axis = self._parameters, one.tip[-1], one.axis[-1]
+        lift = min(p.retreat(tip, axis), float((end - tip) @ axis))
+        self.add((tip + lift * axis)[None], axis[None], p.link_feed, Mark.LEAD)
+        self.add(end[None], axis[None], 0.0, Mark.RETRACT)
 
     def round(self, axis: Floats, tip: Floats, next_axis: Floats) -> None:
         """Turn the tool round the sphere from an axis to another one."""
