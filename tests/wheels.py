@@ -6,7 +6,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from trunnion.plan.channel.blade_channel import NO_TOE, U_BEYOND, BladeChannel, Camber
-from trunnion.plan.channel.meridian import Meridian, MeridianSpline
+from trunnion.plan.channel.meridian import MeridianSpline, WheelMeridian
 
 HUB_RADIUS, SHROUD_RADIUS = 30.0, 20.0
 """mm: radii of the quarter circles in the meridian, both about (40, 32)."""
@@ -21,8 +21,8 @@ def quarter(radius: float) -> MeridianSpline:
     )
 
 
-def meridian() -> Meridian:
-    return Meridian(hub=quarter(HUB_RADIUS), shroud=quarter(SHROUD_RADIUS))
+def meridian() -> WheelMeridian:
+    return WheelMeridian(hub=quarter(HUB_RADIUS), shroud=quarter(SHROUD_RADIUS))
 
 
 def camber(angle: float = 0.0) -> Camber:

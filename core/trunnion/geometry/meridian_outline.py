@@ -23,7 +23,7 @@ ANGLES = np.array([0.3, 1.7, 2.9, 4.1, 5.3])
 """rad about the axis at which surfaces of revolution are looked at."""
 ALIKE = 1e-5
 """Relative difference of area up to which two faces count as one that is repeated about the axis."""
-STANDS_OUT = 1e-3
+OUTSIDE = 1e-3
 """mm outside of what rims enclose from which triangles are added to it."""
 ON_OUTLINE = 1.5 * tolerance.CHORD
 """mm from the outline within which a point of the part lies on it: chords are that far off its arcs."""
@@ -45,9 +45,9 @@ def meridian_outline(points: Floats, triangles: Ints, face: Ints) -> Floats:
     sides = np.vstack([_rims(points, triangles, face), _sides(triangles[thin])])
     outline = _filled(_lines(meridian[sides]))
     used = np.unique(triangles)
-    standing = np.zeros(len(points), dtype=bool)
-    standing[used] = _outside(outline, meridian[used])
-    bulging = corners[standing[triangles].any(axis=1)]
+    beyond = np.zeros(len(points), dtype=bool)
+    beyond[used] = _outside(outline, meridian[used])
+    bulging = corners[beyond[triangles].any(axis=1)]
     if len(bulging):
         outline = _filled([outline, *_made(shapely.polygons(bulging[~_thin(bulging)]))])
     whole = [g for g in _polygons(outline) if g.area > LINE**2]
@@ -80,7 +80,7 @@ def _filled(shapes: Sequence[shapely.Geometry]) -> shapely.Geometry:
 
 
 def _outside(outline: shapely.Geometry, points: Floats) -> Bools:
-    wide = shapely.buffer(outline, STANDS_OUT, quad_segs=1)
+    wide = shapely.buffer(outline, OUTSIDE, quad_segs=1)
     shapely.prepare(wide)
     return ~shapely.contains_xy(wide, points)
 
@@ -140,22 +140,22 @@ def _through(ring: shapely.LinearRing, points: Floats) -> Floats:
     at_corner = shapely.line_locate_point(ring, shapely.points(corners))
     at = shapely.line_locate_point(ring, shapely.points(near))
     order = np.argsort(np.concatenate([at_corner, at]), kind="stable")
-    places = np.concatenate([at_corner, at])[order]
-    is_corner = (np.arange(len(places)) < len(corners))[order]
+    positions = np.concatenate([at_corner, at])[order]
+    is_corner = (np.arange(len(positions)) < len(corners))[order]
     rows = np.vstack([corners, near])[order]
     kept: list[int] = []
     for k in range(len(rows)):
-        if kept and not is_corner[k] and places[k] - places[kept[-1]] < SPACING:
+        if kept and not is_corner[k] and positions[k] - positions[kept[-1]] < SPACING:
             continue
         while (
             kept
             and is_corner[k]
             and not is_corner[kept[-1]]
-            and places[k] - places[kept[-1]] < SPACING
+            and positions[k] - positions[kept[-1]] < SPACING
         ):
             kept.pop()
         kept.append(k)
-    while len(kept) > 1 and not is_corner[kept[-1]] and ring.length - places[kept[-1]] < SPACING:
+    while len(kept) > 1 and not is_corner[kept[-1]] and ring.length - positions[kept[-1]] < SPACING:
         kept.pop()
     plain = _polygons(shapely.Polygon(rows[kept]).simplify(STRAIGHT))[0]
     return np.asarray(plain.exterior.coords)[:-1]

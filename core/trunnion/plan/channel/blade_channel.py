@@ -11,7 +11,7 @@ from scipy.interpolate import LinearNDInterpolator, RegularGridInterpolator
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.sheet.skin import Skin
-from trunnion.plan.channel.meridian import Meridian, cylindrical, in_space
+from trunnion.plan.channel.meridian import WheelMeridian, cylindrical, in_space
 
 U_NODES, W_NODES = 61, 9
 """Nodes of the net that carries a camber surface: bilinear between them it is a few hundredths of a mm off, and no path lies on it."""
@@ -76,7 +76,7 @@ class Camber:
 class BladeChannel:
     """The space between two neighbouring blades, `lower` at the smaller angle, in the rotor's frame; splitters count as blades."""
 
-    meridian: Meridian
+    meridian: WheelMeridian
     lower: Camber
     upper: Camber
 
@@ -113,7 +113,9 @@ def _read(net: RegularGridInterpolator, u: Floats, w: Floats) -> Floats:
     return np.asarray(net(np.stack([u, np.clip(w, 0.0, 1.0)], axis=-1)))
 
 
-def camber_of(skin: Skin, tags: Sequence[int], feet: Sequence[int], meridian: Meridian) -> Camber:
+def camber_of(
+    skin: Skin, tags: Sequence[int], feet: Sequence[int], meridian: WheelMeridian
+) -> Camber:
     """Return the camber of a blade by the faces that are its walls, from a skin in the rotor's frame: the mean of its two sides. `feet` are
     the faces of it that meet the hub."""
     rows = np.unique(skin.triangles[skin.of(tuple(tags))])
@@ -133,7 +135,7 @@ def camber_of(skin: Skin, tags: Sequence[int], feet: Sequence[int], meridian: Me
 
 
 def _toes(
-    skin: Skin, feet: Sequence[int], meridian: Meridian, camber: Camber
+    skin: Skin, feet: Sequence[int], meridian: WheelMeridian, camber: Camber
 ) -> tuple[Floats, Floats]:
     """Return where the faces that meet the hub do so: rows (k, 2) of u and angle, in the order of u, on either side of the camber."""
     rows = np.unique(skin.triangles[skin.of(tuple(feet))])
@@ -178,7 +180,7 @@ def _carried_on(at: Floats, row: Floats, tail: int) -> Floats:
     return out
 
 
-def channels_of(cambers: Sequence[Camber], meridian: Meridian) -> tuple[BladeChannel, ...]:
+def channels_of(cambers: Sequence[Camber], meridian: WheelMeridian) -> tuple[BladeChannel, ...]:
     """Return the channels between blades, each from one to the next around the axis, in the order of the cambers, which go once around."""
     found = []
     for lower, upper in zip(cambers, [*cambers[1:], cambers[0]], strict=True):

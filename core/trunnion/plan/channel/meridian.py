@@ -92,7 +92,7 @@ class MeridianSpline:
 
 
 @dataclass(frozen=True, slots=False, eq=False, kw_only=True)
-class Meridian:
+class WheelMeridian:
     """Hub and shroud of a wheel in the rotor's frame: its z is the axis, towards the inlet."""
 
     hub: MeridianSpline

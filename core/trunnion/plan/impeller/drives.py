@@ -48,8 +48,10 @@ def channel_driven(
         ("rotor skin",),
         lambda: scene.context.skin(tolerance.CHORD, progress).moved(WORLD, rotor),
     )
+    progress.check()
     wheel = scene.once(("wheel",), lambda: wheel_of(scene.recognition, skin))
-    channels = scene.once(("channels",), lambda: wheel.channels(skin))
+    channels = scene.once(("channels",), lambda: wheel.channels(skin, progress))
+    progress.check()
     around = scene.context.around(scene.setup, rotor, skin, progress)
     faces, tips, roots, named = _first_faces(operation, wheel, scene.recognition)
     low, high = scene.blank.box_in(rotor)
@@ -67,6 +69,7 @@ def channel_driven(
         number(operation, ALLOWANCE),
         scene.recognition.features,
     )
+    progress.check()
     surface = SurfaceDrive(
         feature=operation.feature,
         kind=operation.kind,
@@ -82,6 +85,7 @@ def channel_driven(
         digest=identity,
         query_for=around,
     )
+    progress.check()
     drive = ChannelDrive(
         surface=surface,
         channels=channels,

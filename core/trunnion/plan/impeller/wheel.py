@@ -14,7 +14,8 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Feature, Recognition
 from trunnion.plan.channel.blade_channel import BladeChannel, Camber, camber_of, channels_of
-from trunnion.plan.channel.meridian import Meridian, MeridianSpline, cylindrical
+from trunnion.plan.channel.meridian import MeridianSpline, WheelMeridian, cylindrical
+from trunnion.progress import NO_PROGRESS, Progress
 
 BLADE, SPLITTER, HUB = "blade", "splitter", "hub"
 WALLS, EDGES, TIP, ROOT = (
@@ -33,7 +34,7 @@ class Wheel:
     """A wheel in the rotor's frame. `blades` are the features in their order around the axis, a main blade first, splitters among them;
     `angles` (k,) rad where each stands; `period` of them repeat, `copies` (rad) are the turns that bring the first period to all."""
 
-    meridian: Meridian
+    meridian: WheelMeridian
     blades: tuple[Feature, ...]
     angles: Floats
     period: int
@@ -44,10 +45,11 @@ class Wheel:
         some = self.blades[: self.period] if first else self.blades
         return tuple(t for f in some if f.kind == kind for t in f.with_role(*roles))
 
-    def channels(self, skin: Skin) -> tuple[BladeChannel, ...]:
+    def channels(self, skin: Skin, progress: Progress = NO_PROGRESS) -> tuple[BladeChannel, ...]:
         """Return the channels of the first period, from a skin in the rotor's frame."""
         cambers: list[Camber] = []
         for f in self.blades[: self.period]:
+            progress.check()
             feet = f.with_role(*ROOT) or f.tags
             cambers.append(camber_of(skin, f.with_role(*WALLS), feet, self.meridian))
         step = 2.0 * math.pi / len(self.copies)
@@ -110,7 +112,9 @@ def _period(blades: Sequence[Feature], angles: Floats, main: int) -> tuple[int, 
     return total, 1
 
 
-def _meridian(skin: Skin, hub: tuple[int, ...], tips: tuple[int, ...], blade: Feature) -> Meridian:
+def _meridian(
+    skin: Skin, hub: tuple[int, ...], tips: tuple[int, ...], blade: Feature
+) -> WheelMeridian:
     def places(tags: tuple[int, ...]) -> Floats:
         return cylindrical(skin.points[np.unique(skin.triangles[skin.of(tags)])])[0]
 
@@ -124,4 +128,4 @@ def _meridian(skin: Skin, hub: tuple[int, ...], tips: tuple[int, ...], blade: Fe
         curve.places(curve.nearest(foot[None]))[0] - foot
     )
     start = float(curve.nearest(reach[None])[0])
-    return Meridian(hub=replace(curve, start=start), shroud=shroud)
+    return WheelMeridian(hub=replace(curve, start=start), shroud=shroud)

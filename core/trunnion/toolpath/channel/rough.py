@@ -29,7 +29,7 @@ from trunnion.toolpath.contact_passes.channel_finish import (
     CLOSE,
     OFF,
     QUICK,
-    air_links,
+    clearance_links,
     out_of_channel,
     outside_query,
     passes_along,
@@ -131,7 +131,7 @@ def rough(
         sphere=sphere,
         retreat=out_of_channel(drive, settings.safety),
         query=query,
-        air=air_links(drive, tool),
+        air=clearance_links(drive, tool),
     )
     lean = math.radians(tool.taper_angle)
     paths, findings = [], []
@@ -140,7 +140,8 @@ def rough(
         passes: list[Pass] = []
         groups: list[int] = []
         remaining = []
-        levels = layers(channel, tool, data, allowance, settings.safety)
+        levels = layers(channel, tool, data, allowance, settings.safety, share.part(0.0, 0.1))
+        share = share.part(0.1, 1.0)
         for k, lines in enumerate(levels):
             part = share.part(k / len(levels), (k + 1) / len(levels))
             done = passes_along(
@@ -183,7 +184,12 @@ def grown_query(
 
 
 def layers(
-    channel: BladeChannel, tool: Tool, data: CuttingData, allowance: float, safety: float
+    channel: BladeChannel,
+    tool: Tool,
+    data: CuttingData,
+    allowance: float,
+    safety: float,
+    progress: Progress = NO_PROGRESS,
 ) -> list[list[Contacts]]:
     """Return the lines of contacts of all layers, from the shroud to `allowance` mm over the hub, as they are cut to and fro.
 
@@ -196,7 +202,7 @@ def layers(
     tall = channel.meridian.height(np.clip(u, 0.0, 1.0))
     count = max(1, math.ceil((deepest - allowance) / data.depth))
     found = []
-    for k in range(1, count + 1):
+    for k in progress.over(range(1, count + 1), "Laying layers through the channel"):
         share = 1.0 - k / count
         height = allowance + OFF + share * (tall - allowance)
         w = height / tall

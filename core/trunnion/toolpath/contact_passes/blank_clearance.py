@@ -48,14 +48,14 @@ def _outside(
     inward: Callable[[Floats], Floats],
     clearance: float,
 ) -> Outside:
-    places = []
+    positions = []
     for z0, r0, z1, r1 in rows:
         count = max(2, math.ceil((z1 - z0) / ALONG) + 1)
-        places += [
+        positions += [
             (z0 + s * (z1 - z0), r0 + s * (r1 - r0)) for s in np.linspace(0.0, 1.0, count).tolist()
         ]
     # The widest circles are the first to meet the blank.
-    rings = sorted(places, key=lambda place: -place[1])
+    rings = sorted(positions, key=lambda position: -position[1])
     turn = 2.0 * math.pi * np.arange(AROUND) / AROUND
 
     def outside(tip: Floats, axis: Floats) -> Bools:

@@ -16,9 +16,9 @@ from trunnion.model.tool import Tool
 from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.progress import NO_PROGRESS, Progress
-from trunnion.toolpath.contact_passes.air_links import AirLinks
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits, thickened
 from trunnion.toolpath.contact_passes.blank_clearance import body_outside, tool_outside
+from trunnion.toolpath.contact_passes.clearance_links import ClearanceLinks
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.leaning_passes import PointMilledPasses, milled
 from trunnion.toolpath.contact_passes.open_axes import open_axes
@@ -125,7 +125,7 @@ def finished(
         sphere=sphere,
         retreat=out_of_channel(drive, safety),
         query=queries[-1],
-        air=air_links(drive, tool),
+        air=clearance_links(drive, tool),
     )
     path = linked_round(done.passes, parameters)
     return Planned(path=copied(path, drive.copies, sphere), findings=(*findings, *left))
@@ -177,11 +177,11 @@ def out_of_channel(drive: ChannelDrive, safety: float) -> Retreat:
     return lambda tip, axis: deep + safety
 
 
-def air_links(drive: ChannelDrive, tool: Tool) -> AirLinks | None:
+def clearance_links(drive: ChannelDrive, tool: Tool) -> ClearanceLinks | None:
     """Return the links of a tool over the blank; None where fixtures stand that it knows nothing of."""
     if drive.fixed:
         return None
-    return AirLinks(
+    return ClearanceLinks(
         outside=tool_outside(tool, drive.inward, AIR),
         holds=lambda tip, axis: drive.holds(axis),
     )

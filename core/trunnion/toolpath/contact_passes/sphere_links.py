@@ -18,7 +18,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.plan.clearance import ClearanceQuery
-from trunnion.toolpath.contact_passes.air_links import AirLink, AirLinks
+from trunnion.toolpath.contact_passes.clearance_links import ClearanceLink, ClearanceLinks
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.motion.reorient import ClearanceSphere, turn
 
@@ -43,7 +43,7 @@ class SphereLinkParameters:
     retreat: Retreat
     query: ClearanceQuery
     close: float = 1.0
-    air: AirLinks | None = None
+    air: ClearanceLinks | None = None
 
 
 def linked_round(
@@ -88,7 +88,23 @@ def copied(path: Toolpath, copies: Sequence[float], sphere: ClearanceSphere) -> 
         parts.append(one)
         here, axis = one.position[-1], one.axis[-1]
     parts.append(_way(here, axis, top, UPRIGHT, sphere))
-    return Toolpath.join([p for p in parts if len(p)])
+    return _moving(Toolpath.join([p for p in parts if len(p)]))
+
+
+def _moving(path: Toolpath) -> Toolpath:
+    """Return a path of straight moves without those that go nowhere, the first pose of two that are one."""
+    step = np.linalg.norm(np.diff(path.position, axis=0), axis=1)
+    step += np.linalg.norm(np.diff(path.axis, axis=0), axis=1)
+    kept = np.concatenate([[True], step > tolerance.SHORT_MOVE])
+    return replace(
+        path,
+        position=path.position[kept],
+        axis=path.axis[kept],
+        motion=path.motion[kept],
+        centre=path.centre[kept],
+        feed=path.feed[kept],
+        mark=path.mark[kept],
+    )
 
 
 def _way(
@@ -158,18 +174,18 @@ def _straight(
 
 def _over_blank(
     passes: Sequence[Pass], parameters: SphereLinkParameters, straight: Sequence[bool]
-) -> list[AirLink | None]:
+) -> list[ClearanceLink | None]:
     """Return for each pass but the last the link through the air to the next one, None where there is none or none is needed."""
-    found: list[AirLink | None] = [None] * len(straight)
+    found: list[ClearanceLink | None] = [None] * len(straight)
     rows = [k for k, near in enumerate(straight) if not near]
     if parameters.air is None or not rows:
         return found
     ends, starts = (
         (
-            np.array([passes[k + after].tip[place] for k in rows]),
-            np.array([passes[k + after].axis[place] for k in rows]),
+            np.array([passes[k + after].tip[position] for k in rows]),
+            np.array([passes[k + after].axis[position] for k in rows]),
         )
-        for after, place in ((0, -1), (1, 0))
+        for after, position in ((0, -1), (1, 0))
     )
     for k, link in zip(rows, parameters.air.between(ends, starts), strict=True):
         found[k] = link

@@ -26,7 +26,7 @@ STEP, TURN = 3.0, math.radians(3.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class AirLink:
+class ClearanceLink:
     """The poses of a link (k, 3), (k, 3): the first above the end of one pass, the last above the start of the next."""
 
     tip: Floats
@@ -34,7 +34,7 @@ class AirLink:
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class AirLinks:
+class ClearanceLinks:
     """Links of a tool over a blank: `outside` says where all of the tool is clear of it, `holds` which axes the machine can hold."""
 
     outside: Outside
@@ -44,9 +44,9 @@ class AirLinks:
         self,
         ends: tuple[Floats, Floats],
         starts: tuple[Floats, Floats],
-    ) -> list[AirLink | None]:
+    ) -> list[ClearanceLink | None]:
         """Return the links from tips with axes (n, 3) to others; None where the air between is not clear."""
-        found: list[AirLink | None] = [None] * len(ends[0])
+        found: list[ClearanceLink | None] = [None] * len(ends[0])
         lifts = [self._lifts(*poses) for poses in (ends, starts)]
         for higher in HIGHER:
             rows = [
@@ -54,7 +54,7 @@ class AirLinks:
                 for k in range(len(found))
                 if found[k] is None and np.isfinite(lifts[0][k] + lifts[1][k])
             ]
-            ways = [
+            links = [
                 _way(
                     ends[0][k] + (lifts[0][k] + higher) * ends[1][k],
                     ends[1][k],
@@ -63,7 +63,7 @@ class AirLinks:
                 )
                 for k in rows
             ]
-            for k, way, clear in zip(rows, ways, self._clear(ways), strict=True):
+            for k, way, clear in zip(rows, links, self._clear(links), strict=True):
                 found[k] = way if clear else None
         return found
 
@@ -76,23 +76,23 @@ class AirLinks:
         blocked = np.where(clear, -1, np.arange(m)).max(axis=1)
         return np.where(blocked + 1 < m, LIFTS[np.minimum(blocked + 1, m - 1)], np.inf)
 
-    def _clear(self, ways: Sequence[AirLink]) -> list[bool]:
-        if not ways:
+    def _clear(self, links: Sequence[ClearanceLink]) -> list[bool]:
+        if not links:
             return []
-        tip, axis = (np.vstack([getattr(w, name) for w in ways]) for name in ("tip", "axis"))
+        tip, axis = (np.vstack([getattr(w, name) for w in links]) for name in ("tip", "axis"))
         clear: Bools = self.outside(tip, axis)
         clear &= self.holds(tip, axis)
-        ends = np.cumsum([len(w.tip) for w in ways])
+        ends = np.cumsum([len(w.tip) for w in links])
         return [bool(part.all()) for part in np.split(clear, ends[:-1])]
 
 
-def _way(start: Floats, start_axis: Floats, end: Floats, end_axis: Floats) -> AirLink:
+def _way(start: Floats, start_axis: Floats, end: Floats, end_axis: Floats) -> ClearanceLink:
     """Return the poses from one to another, both among them."""
     turn = float(angle_between(start_axis[None], end_axis[None])[0])
     far = float(np.linalg.norm(end - start))
     count = max(1, math.ceil(far / STEP), math.ceil(turn / TURN))
     share = np.linspace(0.0, 1.0, count + 1)
-    return AirLink(
+    return ClearanceLink(
         tip=start + share[:, None] * (end - start),
         axis=slerp(
             np.repeat(start_axis[None], count + 1, axis=0),
