@@ -6,19 +6,19 @@ A package's own sample parts lie in its folder `samples`, as ours do; a family i
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
 from functools import cache
 from importlib.resources import as_file
+from types import MappingProxyType
 from typing import Any
 
 import pytest
 
 import samples
 from own_packages import names, with_own_packages
-from round_parts import wheel
 from seeded.casings import short_ring
+from seeded.impellers import small_impeller
 from shaped_parts import bowl
 from trunnion import registry
 from trunnion.findings import BadInput, Cancelled
@@ -27,24 +27,34 @@ from trunnion.part.part import Part
 from trunnion.pipeline import Engine
 from trunnion.pipeline.planning.family import ratings
 from trunnion.progress import Progress
-from trunnion.settings import checked, choose, declared
+from trunnion.settings import Value, checked, choose, declared
 
 FAMILIES, PLANNERS, STRATEGIES = names("families"), names("planners"), names("strategies")
 MOST_CALLS = 100_000
 """Calls of the interpreter between two looks at cancel: less than 0.1 s (measured: 250 000 take 0.15 s)."""
+
+SHELL = {"setup.machine": "Trunnion 650"}
+"""Choices for the small casing: bosses all round ask for five axes."""
+WHEEL = {
+    "setup.machine": "Trunnion 650",
+    "impeller.scallop": 0.1,
+    "impeller.layer": 3.0,
+    "verify.coverage": 0.3,
+}
+"""Choices for the small wheel: on five axes, coarse, and without what no ball reaches in its sharp roots."""
 
 
 @cache
 def engines() -> dict[str, tuple[Engine, Session]]:
     """Return an engine and its session with features for each small part, by the part's name."""
     found = {}
-    for name, file, machine in (
-        ("pockets", samples.written(samples.two_pockets_and_a_rib_shape()), ""),
-        ("bowl", samples.written(bowl(20.0, 16.0, 8.0, 6.0).shape, name="bowl"), ""),
-        ("shell", samples.written(short_ring(), name="shell-with-bosses"), "Trunnion 650"),
-        ("wheel", samples.written(wheel(1).shape, name="wheel"), ""),
+    for name, file, choices in (
+        ("pockets", samples.written(samples.two_pockets_and_a_rib_shape()), {}),
+        ("bowl", samples.written(bowl(20.0, 16.0, 8.0, 6.0).shape, name="bowl"), {}),
+        ("shell", samples.written(short_ring(), name="shell-with-bosses"), SHELL),
+        ("wheel", samples.written(small_impeller(), name="wheel"), WHEEL),
     ):
-        found[name] = _recognized(file, machine)
+        found[name] = _recognized(file, choices)
     for folder in registry.resource_folders("samples")[1:]:
         for sample in sorted(folder.iterdir(), key=lambda f: f.name) if folder.is_dir() else ():
             with as_file(sample) as file:
@@ -52,12 +62,12 @@ def engines() -> dict[str, tuple[Engine, Session]]:
     return found
 
 
-def _recognized(file: Any, machine: str = "") -> tuple[Engine, Session]:
-    """Return an engine with a part, to be cut on a machine where it needs a certain one, and its session with features."""
+def _recognized(
+    file: Any, choices: Mapping[str, Value] = MappingProxyType({})
+) -> tuple[Engine, Session]:
+    """Return an engine with a part and choices for it, and its session with features."""
     engine = Engine()
-    session = engine.open(file)
-    if machine:
-        session = replace(session, choices={**session.choices, "setup.machine": machine})
+    session = engine.with_choices(engine.open(file), choices)
     return engine, engine.run(session, until="recognize")
 
 

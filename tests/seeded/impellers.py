@@ -103,6 +103,22 @@ def impeller(seed: int, fillet: bool = False) -> SeededImpeller:
     )
 
 
+def small_impeller() -> Any:
+    """Return the solid (OCP, mm) of a small open wheel that is quickly planned: six low blades with sharp roots, its axis z."""
+    radius, count = 20.0, 6
+    height, outlet = 0.65 * radius, 0.14 * radius
+    hub = _meridian((0.26 * radius, height), (0.28 * radius, 0.12 * height), (1.02 * radius, 0.0))
+    shroud = _meridian(
+        (0.6 * radius, height), (0.62 * radius, outlet + 0.15 * height), (1.02 * radius, outlet)
+    )
+    envelope = _turned([(0.0, height + 1.0), *_curve(shroud, radius), (radius, -1.0), (0.0, -1.0)])
+    body = _hub([(0.0, height), *_curve(hub, radius), (radius, -3.0), (0.0, -3.0)], 1)
+    one = _blade(hub, shroud, 0.1, radians(30.0), 0.04 * radius, 1).intersect(envelope)
+    wheel = body.fuse(*(one.rotate(*AXIS, 360.0 * k / count) for k in range(count)))
+    bore = cq.Solid.makeCylinder(2.5, 4.0 * radius, cq.Vector(0, 0, -2.0 * radius))
+    return wheel.cut(bore).Solids()[0].wrapped
+
+
 AXIS = (cq.Vector(0, 0, 0), cq.Vector(0, 0, 1))
 
 

@@ -37,12 +37,28 @@ def surface_rows(outline: Floats) -> Ints:
     return np.flatnonzero((outline[:, 0] > 0.0) | (np.roll(outline[:, 0], -1) > 0.0))
 
 
-def line_distances(outline: Floats, points: Floats) -> Floats:
-    """Return the distance (n, s) of points (n, 3) to the surface of each line of `surface_rows`."""
+def smooth_runs(outline: Floats) -> list[Ints]:
+    """Return the lines of `surface_rows` (rows of their first points) in runs that go on without a corner, in their order round the
+    outline; level ones are runs of their own."""
+    rows = surface_rows(outline)
+    step = np.roll(outline, -1, axis=0)[rows] - outline[rows]
+    heading = np.arctan2(step[:, 1], step[:, 0])
+    level = np.abs(step[:, 1]) <= tolerance.COINCIDENT
+    turn = np.abs(np.angle(np.exp(1j * (heading - np.roll(heading, 1)))))
+    follows = np.roll(rows, 1) == (rows - 1) % len(outline)
+    begins = ~follows | (turn > tolerance.SMOOTH_JOIN) | level | np.roll(level, 1)
+    if not begins.any():
+        return [rows]
+    first = int(np.argmax(begins))
+    rows, begins = np.roll(rows, -first), np.roll(begins, -first)
+    return np.split(rows, np.flatnonzero(begins)[1:])
+
+
+def run_distances(outline: Floats, points: Floats) -> Floats:
+    """Return the distance (n, s) of points (n, 3) to the surface of each of `smooth_runs`."""
     at = half_plane(points)
     return np.stack(
-        [nearest_segment(at, *_lines(outline, np.array([k])))[0] for k in surface_rows(outline)],
-        axis=1,
+        [nearest_segment(at, *_lines(outline, run))[0] for run in smooth_runs(outline)], axis=1
     )
 
 

@@ -1,4 +1,4 @@
-"""The blank: a box, a round bar or a turned envelope around the part with an allowance on each side, or what a file holds."""
+"""The blank: a box, a round bar or a turned envelope around the part, one that is turned to size, or what a file holds."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.meridian_outline import meridian_outline
 from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.turned_outline import outer_meridian
 from trunnion.geometry.turned_state import round_and_straight, turned_state
@@ -17,9 +18,16 @@ from trunnion.recognize.revolution import RevolutionAxis, of_revolution
 from trunnion.settings import setting, settings
 from trunnion.tolerance import CHORD, COINCIDENT
 
-AUTOMATIC, BOX, CYLINDER, TURNED, FILE = "auto", "box", "cylinder", "turned", "file"
-FINISH_TURNED = "finish-turned"
-KINDS = (AUTOMATIC, BOX, CYLINDER, TURNED, FINISH_TURNED, FILE)
+AUTOMATIC, BOX, CYLINDER, TURNED, FINISH_TURNED, RING_TURNED, FILE = (
+    "auto",
+    "box",
+    "cylinder",
+    "turned",
+    "finish-turned",
+    "ring-turned",
+    "file",
+)
+KINDS = (AUTOMATIC, BOX, CYLINDER, TURNED, FINISH_TURNED, RING_TURNED, FILE)
 LEVELS = 64
 """Bands along the axis that a turned envelope follows the part in: of 2 mm on a wheel of 120 mm."""
 DECIMALS = 7
@@ -34,8 +42,8 @@ class BlankSettings:
         AUTOMATIC,
         choices=KINDS,
         label="Kind of blank",
-        help="A box, a round bar or a turned envelope around the part, the part as turning leaves it, or the solid of a file; auto: what "
-        "parts of the family are usually cut from, a box for most.",
+        help="A box, a round bar or a turned envelope around the part; turned to size: finish-turned by its own meridian, ring-turned "
+        "with even rings where bosses stand; or the solid of a file. auto: what parts of the family are usually cut from, a box for most.",
     )
     side: float = setting(
         5.0,
@@ -166,7 +174,7 @@ def make_envelope(
     )
 
 
-def make_finish_turned(frame: Frame, mesh: Mesh, graph: FaceGraph, material: Material) -> Revolved:
+def make_ring_turned(frame: Frame, mesh: Mesh, graph: FaceGraph, material: Material) -> Revolved:
     """Return what is left of a part's surroundings, its mesh in the part's coordinates, when all that turning about the frame's z reaches
     is turned to size: faces of revolution are done, rings stand where other features rise from them."""
     turned = of_revolution(graph, RevolutionAxis(point=frame.origin, direction=frame.z))
@@ -176,6 +184,26 @@ def make_finish_turned(frame: Frame, mesh: Mesh, graph: FaceGraph, material: Mat
         mesh.face,
         *round_and_straight(turned, graph.surface),
     )
+    return Revolved(
+        frame=frame,
+        outline=np.round(outline, DECIMALS),
+        material=material.name,
+        density=material.density,
+    )
+
+
+def make_finish_turned(
+    frame: Frame, points: Floats, triangles: Ints, face: Ints, material: Material
+) -> Revolved:
+    """Return the blank whose turned faces are finished: what the part's triangles (t, 3) of points (v, 3) with tags `face` (t,), given in
+    `frame`, sweep about its z.
+
+    Raises `BadInput` where the part is in pieces about that axis.
+    """
+    try:
+        outline = meridian_outline(points, triangles, face)
+    except ValueError as reason:
+        raise BadInput(f"no finish-turned blank: {reason}; choose blank.kind = turned") from None
     return Revolved(
         frame=frame,
         outline=np.round(outline, DECIMALS),

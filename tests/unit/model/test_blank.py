@@ -271,3 +271,15 @@ def test_a_point_is_inside_a_turned_outline_by_the_lines_beyond_it():
     at = np.random.default_rng(0).uniform([5, -3], [25, 23], (5000, 2))
     expected = shapely.contains_xy(shapely.Polygon(outline), at)
     assert (_is_inside(outline, at) == expected).all() and expected.any()
+
+
+def test_a_smooth_run_of_an_outline_is_one_side_and_its_ends_are_others():
+    turn = np.linspace(0.0, 0.5 * math.pi, 30)
+    dome = np.column_stack([10.0 * np.cos(turn), 10.0 * np.sin(turn)])
+    dome[-1, 0] = 0.0
+    blank = Revolved(
+        frame=WORLD, outline=np.vstack([[0.0, 0.0], dome]), material="EN AW-7075", density=2.8e-6
+    )
+    on_dome = np.column_stack([dome[:-1, 0], np.zeros(29), dome[:-1, 1]])
+    sides = blank.sides(on_dome, 0.02)
+    assert sides.shape[1] == 2 and sides.all(axis=0).sum() == 1

@@ -14,10 +14,11 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.region import Region
 from trunnion.geometry.rays import Intervals
 from trunnion.geometry.revolved import (
-    line_distances,
     revolved_depth,
     revolved_intervals,
     revolved_volume,
+    run_distances,
+    smooth_runs,
     surface_rows,
 )
 from trunnion.model.blank.base import BlankBase, Builder, S
@@ -118,12 +119,12 @@ class Revolved(BlankBase):
         return revolved_depth(self.outline, self._turned(points))
 
     def sides(self, points: Floats, near: float, sag: float = 0.0) -> Bools:
-        """See `BlankBase`: a side for each line of the outline that is not on the axis; level ones are flat."""
-        rows, points = surface_rows(self.outline), self._turned(points)
-        along = self.outline[:, 1]
+        """See `BlankBase`: a side for each run of the outline's lines without a corner, but for those on the axis; level ones are flat."""
+        rows = np.array([run[0] for run in smooth_runs(self.outline)])
+        points, along = self._turned(points), self.outline[:, 1]
         flat = np.abs(np.roll(along, -1) - along)[rows] <= tolerance.COINCIDENT
         off_plane = np.abs(points[:, 2, None] - along[rows])
-        away = line_distances(self.outline, points)
+        away = run_distances(self.outline, points)
         # Where cells follow a rim in steps they stand out of it, still in the end's plane.
         return (away <= near + sag) & (~flat | (off_plane <= near))
 

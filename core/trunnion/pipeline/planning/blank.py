@@ -21,6 +21,7 @@ from trunnion.plan.blank import (
     CYLINDER,
     FILE,
     FINISH_TURNED,
+    RING_TURNED,
     TURNED,
     BlankSettings,
     make_bar,
@@ -28,6 +29,7 @@ from trunnion.plan.blank import (
     make_envelope,
     make_faceted,
     make_finish_turned,
+    make_ring_turned,
 )
 from trunnion.progress import Progress
 from trunnion.recognize.contract import usual_blank
@@ -52,7 +54,11 @@ def blank_of(session: Session, context: Context, frame: Frame, progress: Progres
         mesh = context.part.mesh()
         return make_envelope(frame, frame.to_local(mesh.points), mesh.triangles, material, settings)
     if kind == FINISH_TURNED:
-        return make_finish_turned(frame, context.part.mesh(), context.part.graph(), material)
+        mesh = context.part.mesh()
+        points = frame.to_local(mesh.points)
+        return make_finish_turned(frame, points, mesh.triangles, mesh.face, material)
+    if kind == RING_TURNED:
+        return make_ring_turned(frame, context.part.mesh(), context.part.graph(), material)
     if kind == CYLINDER:
         points = frame.to_local(context.part.mesh().points)
         return make_bar(frame, low, high, points, material, settings)

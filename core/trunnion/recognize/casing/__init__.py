@@ -36,7 +36,7 @@ class CasingFamily:
     noun = "a casing"
     kinds = KINDS
     settings = CasingSettings
-    blank = "finish-turned"
+    blank = "ring-turned"
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return the share of the part's area in faces of revolution about its main axis and in what stands on them."""

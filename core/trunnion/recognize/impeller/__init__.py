@@ -44,7 +44,7 @@ class ImpellerFamily:
     noun = "an impeller"
     kinds = KINDS
     settings = ImpellerSettings
-    blank = "turned"
+    blank = "finish-turned"
 
     def suits(self, graph: FaceGraph) -> Suitability:
         """Return the share of the part's area in its blades, the faces of revolution and all that is repeated about the axis."""

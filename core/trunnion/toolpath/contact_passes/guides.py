@@ -25,6 +25,9 @@ CORNER = math.radians(30.0)
 EVEN = 0.5
 """Two rims make a ring if it is at its narrowest at least this share of its widest."""
 
+STRAIGHT = 1.02
+"""Length over chord up to which a run of a rim is about straight: an arc of 40 degrees."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Guides:
@@ -104,18 +107,32 @@ def _on_triangles(rim: Floats, skin: Skin, triangles: Ints) -> Bools:
     if not len(used):
         return np.zeros(len(rim), bool)
     gap, position = cKDTree(skin.points[used]).query(rim)
-    on = np.asarray(gap <= tolerance.JOINED_POINTS)
+    # Each face may have points of its own on the rim: off the other's by as much as its triangles may be.
+    on = np.asarray(gap <= 2.0 * tolerance.CHORD)
     sides = {
         frozenset(side)
         for k in range(3)
         for side in zip(triangles[:, k].tolist(), triangles[:, (k + 1) % 3].tolist(), strict=True)
     }
+    corners = skin.points[triangles]
+    longest = float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max())
     rows, number, n = np.flatnonzero(on), used[np.asarray(position)].tolist(), len(rim)
     for row, after in zip(rows.tolist(), np.roll(rows, -1).tolist(), strict=True):
         width = (after - row) % n
-        if 2 * width <= n and frozenset((number[row], number[after])) in sides:
+        run = rim[np.arange(row, row + width + 1) % n]
+        if 2 * width <= n and (
+            frozenset((number[row], number[after])) in sides or _is_short(run, longest)
+        ):
             on[np.arange(row, row + width) % n] = True
     return on
+
+
+def _is_short(run: Floats, longest: float) -> bool:
+    """Return whether a run of a rim (k, 3) is about straight and no longer than the longest side of triangles: faces that meet along a rim
+    may have some of their points on it each for themselves."""
+    chord = float(np.linalg.norm(run[-1] - run[0]))
+    length = float(np.linalg.norm(np.diff(run, axis=0), axis=1).sum())
+    return chord <= longest and length <= STRAIGHT * chord
 
 
 def _sides(sheet: Sheet, rim: Ints) -> list[Ints]:

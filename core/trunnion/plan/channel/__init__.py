@@ -1,0 +1,1 @@
+"""Channels between blades that stand on a hub: their coordinates, and what drives strategies in them."""

@@ -1,0 +1,102 @@
+"""The planner of impellers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trunnion import tolerance
+from trunnion.findings import BadInput, Finding, Refused, error
+from trunnion.geometry.frame import WORLD
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.plan.channel.drive import ChannelDrive
+from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
+from trunnion.plan.feasibility import too_large
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.surface_drives import surface_driven
+from trunnion.plan.holes.drive import HoleDrive, holes_driven
+from trunnion.plan.impeller.drives import channel_driven
+from trunnion.plan.impeller.route import CUTTER_RULES, make_impeller_route
+from trunnion.plan.impeller.settings import ImpellerRouteSettings
+from trunnion.plan.impeller.wheel import wheel_of
+from trunnion.plan.process import process_of
+from trunnion.plan.settings import RouteSettings
+from trunnion.plan.typical import typical_plan
+from trunnion.progress import Progress
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
+
+
+class ImpellerPlanner:
+    """Plans the channels of one period of a wheel; what is turned before is told."""
+
+    name, noun = "impeller", "impellers"
+    settings: tuple[type, ...] = (RouteSettings, ImpellerRouteSettings)
+    cutter_rules: tuple[str, ...] = CUTTER_RULES
+
+    def can_plan(self, part: Part) -> None:
+        """Raise `BadInput` for faces that enclose no material."""
+        if not part.is_closed:
+            raise BadInput("nothing can be planned for faces that enclose no material")
+
+    def route(self, job: RouteJob) -> ProcessTree:
+        """Return the process by `make_impeller_route`, or why the blank fits no machine."""
+        route = job.settings_of(RouteSettings)
+        job.progress.at(0.0, "looking at the wheel")
+        findings = too_large(job.blank, job.setups, job.shop) or self._without_axes(job)
+        if not findings:
+            skin = job.context.skin(tolerance.CHORD, job.progress)
+            skin = skin.moved(WORLD, job.recognition.frame)
+            try:
+                wheel = wheel_of(job.recognition, skin)
+            except Refused as reason:
+                findings = [_not_planned(job, str(reason), "correct the features")]
+        if findings:
+            plan = typical_plan(job.shop, job.recognition.family, route.plan, CUTTER_RULES)
+            material = job.shop.material(job.blank.material)
+            return process_of(
+                (), findings, plan=plan, material=material, setups=job.setups, shop=job.shop
+            )
+        return make_impeller_route(
+            job.recognition,
+            wheel,
+            skin,
+            job.blank,
+            job.setups,
+            job.shop,
+            route,
+            job.settings_of(ImpellerRouteSettings),
+        )
+
+    def _without_axes(self, job: RouteJob) -> list[Finding]:
+        if job.shop.machine(job.setups[0].machine).rotary:
+            return []
+        return [
+            _not_planned(
+                job,
+                "channels between blades are milled by a tool that leans, and the machine has no rotary axes",
+                "choose a machine with rotary axes (setup.machine)",
+            )
+        ]
+
+    def drive(
+        self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+    ) -> OperationDrive:
+        """Return the drive that an operation's strategy needs."""
+        return driven_by(
+            {
+                ChannelDrive: channel_driven,
+                SurfaceDrive: surface_driven,
+                HoleDrive: holes_driven,
+            },
+            self,
+            operation,
+            needs,
+            scene,
+            progress,
+        )
+
+
+def _not_planned(job: RouteJob, text: str, remedy: str) -> Finding:
+    return error("route.not-planned", text, *(f.id for f in job.recognition), remedy=remedy)

@@ -1,0 +1,211 @@
+"""The route of an impeller: channels roughed, blades and splitters finished from tip to root, the hub, the root fillets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from trunnion.findings import Finding, error, face_tags, info
+from trunnion.geometry.sheet.skin import Skin
+from trunnion.model.blank import Blank
+from trunnion.model.feature import Recognition
+from trunnion.model.material import Machine, Material
+from trunnion.model.operation import Operation
+from trunnion.model.process import ProcessTree
+from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
+from trunnion.plan.cutting.milling import (
+    CuttingSettings,
+    cutting_data,
+    roughing_depth,
+)
+from trunnion.plan.freeform.cutters.choice import named
+from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
+from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
+from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, on_hub, sizes_of, through_channel
+from trunnion.plan.impeller.settings import ImpellerRouteSettings
+from trunnion.plan.impeller.wheel import BLADE, EDGES, HUB, ROOT, SPLITTER, WALLS, Wheel
+from trunnion.plan.process import process_of
+from trunnion.plan.settings import RouteSettings
+from trunnion.plan.typical import typical_plan
+from trunnion.settings import Value, choose
+from trunnion.shop import Shop, Stage, TypicalPlan
+from trunnion.units import trimmed
+
+CHANNEL, WALL, HUB_CUTTER, FILLET = "channel", "walls", "hub", "fillet"
+CUTTER_RULES = (CHANNEL, WALL, HUB_CUTTER, FILLET)
+"""Words that a typical plan may give for a stage's cutter."""
+ROLES = {WALL: (*WALLS, *EDGES), FILLET: ROOT}
+"""Roles of the faces that a stage finishes, by its rule for the cutter."""
+WIDTH = 0.5
+"""Of the cutter's diameter: how far apart the passes of a layer lie. The first of them is a full slot anyhow."""
+LEFT = 2.0
+"""Times the roughing allowance: how deep finishing cuts at most, where walls twist away from the tool that roughed along them."""
+
+
+@dataclass(slots=True)
+class ImpellerPlanState:
+    """What is known while an impeller is planned, and the operations so far."""
+
+    recognition: Recognition
+    wheel: Wheel
+    sizes: WheelSizes
+    setup: Setup
+    material: Material
+    machine: Machine
+    shop: Shop
+    settings: ImpellerRouteSettings
+    operations: list[Operation] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+
+    def cutter(self, rule: str) -> Tool | None:
+        """Return the cutter of a stage by its rule, the one that a person named before all others."""
+        s = self.settings
+        tools = self.shop.tools_for(self.material.iso_group, "surface")
+        wanted = {CHANNEL: s.rough_cutter, WALL: s.finish_cutter}.get(rule, s.fillet_cutter)
+        if wanted:
+            return named(self.shop, wanted)
+        if rule in (CHANNEL, WALL):
+            return through_channel(tools, self.sizes, s.rough_allowance)
+        return on_hub(tools, self.sizes) if rule == HUB_CUTTER else in_fillet(tools, self.sizes)
+
+
+def make_impeller_route(
+    recognition: Recognition,
+    wheel: Wheel,
+    skin: Skin,
+    blank: Blank,
+    setups: Sequence[Setup],
+    shop: Shop,
+    route: RouteSettings,
+    settings: ImpellerRouteSettings,
+) -> ProcessTree:
+    """Return the process of an impeller; `skin` lies in the rotor's frame. What is not planned is in its findings."""
+    plan = typical_plan(shop, recognition.family, route.plan, CUTTER_RULES)
+    state = ImpellerPlanState(
+        recognition=recognition,
+        wheel=wheel,
+        sizes=sizes_of(wheel, skin),
+        setup=setups[0],
+        material=shop.material(blank.material),
+        machine=shop.machine(setups[0].machine),
+        shop=shop,
+        settings=settings,
+    )
+    for stage in plan.stages:
+        _plan_stage(state, stage)
+    _add_turned(state)
+    return process_of(
+        _in_order(state.operations, plan),
+        state.findings,
+        plan=plan,
+        material=state.material,
+        setups=setups,
+        shop=shop,
+    )
+
+
+def _plan_stage(state: ImpellerPlanState, stage: Stage) -> None:
+    tool = state.cutter(stage.cutter)
+    if tool is None:
+        state.findings.append(_no_cutter(state, stage))
+        return
+    if stage.cutter in ROLES:
+        for kind in stage.on:
+            features = [f for f in state.wheel.blades if f.kind == kind]
+            tags = tuple(t for f in features for t in f.with_role(*ROLES[stage.cutter]))
+            if tags:
+                _add(state, stage, f"{stage.name}-{kind}", features[0].id, tool, tags)
+        return
+    for f in state.recognition.of_kind(*stage.on)[:1]:
+        _add(state, stage, f.id, f.id, tool, f.tags if stage.finish else ())
+
+
+def _add(
+    state: ImpellerPlanState,
+    stage: Stage,
+    name: str,
+    feature: str,
+    tool: Tool,
+    tags: tuple[int, ...],
+) -> None:
+    s, cutting = state.settings, choose(CuttingSettings, {})
+    height = s.height()
+    if stage.finish:
+        depth = LEFT * s.rough_allowance
+        width = stepover_on_plane(tool.corner_radius, height)
+        choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: 0.0}
+        why = f"{tool.name}: scallops of {trimmed(1000.0 * height, 1)} um, {trimmed(width, 3)} mm between passes on a plane."
+    else:
+        bears = roughing_depth(tool, state.material, cutting)
+        depth = min(bears, s.layer) if s.layer > 0.0 else bears
+        width = WIDTH * tool.diameter
+        choices = {ALLOWANCE: s.rough_allowance}
+        why = (
+            f"{tool.name}: the narrowest channel is {trimmed(state.sizes.channel, 2)} mm wide, "
+            f"blades are {trimmed(state.sizes.height, 1)} mm high; "
+            f"layers of {trimmed(depth, 2)} mm, {trimmed(s.rough_allowance, 2)} mm are left."
+        )
+    copies = len(state.wheel.copies)
+    rules = (
+        stage.rule,
+        why,
+        f"One period of the wheel is programmed and turned to {copies} places.",
+    )
+    data = cutting_data(tool, state.material, state.machine, stage.kind, cutting, depth, width)
+    state.operations.append(
+        Operation(
+            id=f"{stage.kind}-{name}".replace(" ", "-"),
+            kind=stage.kind,
+            strategy=stage.strategy,
+            feature=feature,
+            setup=state.setup.name,
+            tool=tool,
+            data=data,
+            faces=tags,
+            choices=choices,
+            rules=rules,
+            group=stage.name,
+        )
+    )
+
+
+def _in_order(operations: Sequence[Operation], plan: TypicalPlan) -> list[Operation]:
+    """Return the operations, which stand in the order of the plan's stages, with what comes before each."""
+    before = {s.name: set(s.after_all) | set(s.after) for s in plan.stages}
+    return [
+        replace(
+            o,
+            after=tuple(sorted(other.id for other in operations if other.group in before[o.group])),
+        )
+        for o in operations
+    ]
+
+
+def _add_turned(state: ImpellerPlanState) -> None:
+    """Tell of the features that no operation cuts: what is turned, or bored, before the channels are milled."""
+    cut = {t for o in state.operations for t in o.faces}
+    others = [f for f in state.recognition if f.kind not in (BLADE, SPLITTER, HUB)]
+    left = [f for f in others if not set(f.tags) & cut]
+    if left:
+        state.findings.append(
+            info(
+                "route.turned",
+                f"{', '.join(f.id for f in left)}: turned or bored before the channels are milled, as tips, outlet and the hub's nose are",
+                *(f.id for f in left),
+                remedy="give the blank these surfaces, or add operations for what it has not",
+            )
+        )
+
+
+def _no_cutter(state: ImpellerPlanState, stage: Stage) -> Finding:
+    s = state.sizes
+    tags = tuple(t for f in state.recognition.of_kind(*stage.on) for t in f.tags)
+    return error(
+        "route.no-cutter",
+        f"{stage.name}: no tapered ball of the catalogue goes through a channel {trimmed(s.channel, 2)} mm wide between blades "
+        f"{trimmed(s.height, 1)} mm high, with root fillets of {trimmed(s.fillet, 2)} mm",
+        *(f.id for f in state.recognition.of_kind(*stage.on)),
+        *face_tags(tags),
+        remedy="add a slimmer or longer cutter to the tools folder, or leave a smaller allowance",
+    )

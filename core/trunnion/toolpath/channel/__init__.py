@@ -1,0 +1,1 @@
+"""Strategies in the channels of bladed wheels, a module a strategy."""

@@ -1,0 +1,263 @@
+"""Passes of a leaning cutter along lines of contacts: axes first, then the poses along them, in blocks within the chord error.
+
+Moves between two clear poses may touch something: they go back to the search for axes. What no pass covers is the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, C
+from trunnion.model.tool import Tool
+from trunnion.plan.clearance import ClearanceQuery
+from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at, touching
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.toolpath.contact_passes.axis_fields import AxisField
+from trunnion.toolpath.contact_passes.axis_search import (
+    STEP,
+    AxisSearch,
+    FreeAxes,
+    LeanLimits,
+    free_axes,
+)
+from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
+from trunnion.toolpath.contact_passes.passes import Pass
+
+SHARES = (0.25, 0.5, 0.75)
+"""Where on a block its chord error is looked at, beside the contacts on its path."""
+HALVINGS = 12
+TRIES = 4
+"""Times that axes are chosen again where a move between two clear ones touched something."""
+OVERLAP = 0.25
+"""Of an earlier cutter's radius: how far what it left is cut beyond its end."""
+STRAIGHT = 1000.0
+"""mm: a cutter that is flatter where it touches counts as this round."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class PointMilledPasses:
+    """Passes of a leaning cutter, the stretches of the contact lines that had to be left, and their share of the paths."""
+
+    passes: tuple[Pass, ...]
+    rest: tuple[Contacts, ...]
+    remaining: float
+
+
+def milled(
+    contact_lines: Sequence[Contacts],
+    tool: Tool,
+    field: AxisField,
+    query: ClearanceQuery | None,
+    limits: LeanLimits,
+    chord: float,
+    allowance: float = 0.0,
+    progress: Progress = NO_PROGRESS,
+) -> PointMilledPasses:
+    """Return the passes of a cutter over contact passes, its axis as near to a field as `query` and the limits let it.
+
+    The cutter stays within `chord` mm of where it touches, thicker by the allowance. Moves that touch what they must not are left out.
+    """
+    if not contact_lines:
+        return PointMilledPasses(passes=(), rest=(), remaining=0.0)
+    # Axes first, then the poses along them; moves that touch something go back to the search (`met`) until TRIES are over.
+    search = AxisSearch(contact_lines, field, tool, query, limits, allowance)
+    axes_of_lines = search.found_axes(progress.part(0.0, 0.5))
+    found: list[list[tuple[Floats, Pass]]] = [[] for _ in contact_lines]
+    again = list(range(len(contact_lines)))
+    for n in range(TRIES):
+        share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
+        for k in share.over(again, "Following flow lines with a leaning tool"):
+            found[k], met = _cut(
+                [
+                    located(contact_lines[k], run, tool, chord, allowance)
+                    for run in axes_of_lines[k].runs()
+                ],
+                query,
+            )
+            if len(met) and n + 1 < TRIES:
+                search.met(k, met)
+        again = np.flatnonzero(search.dirty).tolist()
+        axes_of_lines = search.found_axes(share) if again else axes_of_lines
+    # What no pass covers is the rest, in rows of the contacts: left to a thinner tool or reported.
+    gaps = [
+        _gaps(
+            len(contacts) - 1.0,
+            [(float(position[0]), float(position[-1])) for position, _ in pieces],
+        )
+        for contacts, pieces in zip(contact_lines, found, strict=True)
+    ]
+    whole, remaining = (
+        sum(_run(contacts, 0.0, len(contacts) - 1.0) for contacts in contact_lines),
+        sum(_run(contacts, *g) for contacts, some in zip(contact_lines, gaps) for g in some),
+    )
+    rest = tuple(
+        contacts.of(slice(math.floor(a), math.ceil(b) + 1))
+        for contacts, some in zip(contact_lines, gaps, strict=True)
+        for a, b in some
+    )
+    return PointMilledPasses(
+        passes=tuple(one for pieces in found for _, one in pieces),
+        rest=rest,
+        remaining=remaining / whole if whole > 0.0 else 0.0,
+    )
+
+
+def rest_of(
+    contact_lines: Sequence[Contacts],
+    earlier: Tool,
+    field: AxisField,
+    query: ClearanceQuery,
+    limits: LeanLimits,
+    allowance: float = 0.0,
+    progress: Progress = NO_PROGRESS,
+) -> tuple[Contacts, ...]:
+    """Return the stretches of contact passes where an earlier cutter had no free axis, and a little more all round."""
+    axes_of_lines = free_axes(contact_lines, field, earlier, query, limits, allowance, progress)
+    gone = np.vstack(
+        [
+            np.zeros((0, 3)),
+            *(
+                between(contacts.point, contacts.normal, contacts.feed, axes.position[~axes.free])[
+                    0
+                ]
+                for contacts, axes in zip(contact_lines, axes_of_lines, strict=True)
+            ),
+        ]
+    )
+    if not len(gone):
+        return ()
+    tree, overlap, found = cKDTree(gone), OVERLAP * earlier.radius + STEP / limits.turn, []
+    for contacts in contact_lines:
+        near = tree.query(contacts.point)[0] <= overlap
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]]).astype(np.int64)))
+        found += [contacts.of(slice(a, b)) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
+    return tuple(found)
+
+
+def located(
+    contacts: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
+) -> tuple[Floats, Pass]:
+    """Return where a cutter is along a run of a contact pass: the positions (k,) of the path and the pass itself."""
+    radius, feed = max(tool.corner_radius, 0.25 * tool.radius), contacts.feed
+    travel = contacts.travel(radius)
+    position = run.position
+    rows = np.arange(len(contacts), dtype=np.float64)
+    rows = rows[(rows > position[0]) & (rows < position[-1])]
+    normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
+    # Halve: off is the distance between the straight block and the contact's tip, along the face's normal.
+    for _ in range(HALVINGS):
+        share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
+        probe = np.concatenate([rows, share])
+        block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
+        gone = np.interp(probe, np.arange(len(contacts)), travel)
+        ends = np.interp(position, np.arange(len(contacts)), travel)
+        part = np.clip(
+            (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
+            0.0,
+            1.0,
+        )
+        turned = slerp(axis[block], axis[block + 1], part)
+        at, out = between(contacts.point, contacts.normal, feed, probe)
+        tip_at_block = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
+        off = np.abs(
+            ((tip_at_block - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1)
+        )
+        worst = np.zeros(len(position) - 1)
+        np.maximum.at(worst, block, off)
+        split = np.flatnonzero(
+            (worst > chord)
+            & (np.linalg.norm(np.diff(tip, axis=0), axis=1) > 2.0 * tolerance.SHORT_MOVE)
+        )
+        if not len(split):
+            break
+        position = np.sort(
+            np.concatenate([position, 0.5 * (position[split] + position[split + 1])])
+        )
+        normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
+    return position, Pass(tip=tip, axis=axis, normal=normal)
+
+
+def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
+    """Return the ball that leaves the same grooves as a cutter that leans by a lead and a tilt (rad): how wide apart passes may lie.
+
+    Where a cutter touches, it is as round as its profile in the plane of its axis, and round about its axis across that plane.
+    """
+    if tool.form == "ball" or (tool.form == "taper" and tool.corner_radius == tool.radius):
+        radius = tool.corner_radius
+    else:
+        lean = math.acos(math.cos(lead) * math.cos(tilt))
+        pieces = lower_side(tool)
+        rho = float(touching(tool, np.array([lean]))[0][0])
+        profile = next(
+            (1.0 / row[C] for row in pieces if row[ROUND] and row[0] <= rho <= row[1]), 0.0
+        )
+        # The share of the lean that lies across the feed.
+        across = (math.sin(tilt) / math.sin(lean)) ** 2 if lean > 0.0 else 0.0
+        curved = across * profile + (1.0 - across) * (
+            math.sin(lean) / rho if rho > 0.0 else profile
+        )
+        radius = 1.0 / max(curved, 1.0 / STRAIGHT)
+    return replace(
+        tool,
+        form="ball",
+        diameter=2.0 * radius,
+        corner_radius=radius,
+        flute_length=max(tool.flute_length, radius),
+        neck_length=max(tool.neck_length, radius),
+        stickout=max(tool.stickout, radius),
+        gauge_length=max(tool.gauge_length, radius),
+        taper_angle=0.0,
+        barrel_radius=0.0,
+    )
+
+
+def _poses_at(
+    contacts: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, position: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Return the normals, axes and tips (k, 3) at positions (k,) of a run."""
+    point, normal = between(contacts.point, contacts.normal, feed, position)
+    axis = run.at(position)
+    return normal, axis, tip_at(tool, point + allowance * normal, normal, axis)
+
+
+def _cut(
+    runs: Sequence[tuple[Floats, Pass]], query: ClearanceQuery | None
+) -> tuple[list[tuple[Floats, Pass]], Floats]:
+    """Return the stretches of runs whose moves are clear, and the positions where a move is not."""
+    if query is None:
+        return list(runs), np.zeros(0)
+    pieces, met = [], [np.zeros(0)]
+    for position, one in runs:
+        clear = query(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1])
+        pieces += [(position[s], one.of(s)) for s in _stretches(clear)]
+        met.append(0.5 * (position[:-1] + position[1:])[~clear])
+    return pieces, np.concatenate(met)
+
+
+def _stretches(clear: Bools) -> list[slice]:
+    """Return the rows of ends of blocks (k,) that are clear one after the other."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], clear, [False]]).astype(np.int64)))
+    return [slice(a, b + 1) for a, b in edges.reshape(-1, 2).tolist()]
+
+
+def _gaps(end: float, done: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return the stretches between positions 0 and `end` that lie in none of those that are done."""
+    found, here = [], 0.0
+    for a, b in [*sorted(done), (end, end)]:
+        if a > here + tolerance.COINCIDENT:
+            found.append((here, a))
+        here = max(here, b)
+    return found
+
+
+def _run(contacts: Contacts, start: float, end: float) -> float:
+    """Return the length in mm of the contact line from a position to another."""
+    length = contacts.travel(0.0)
+    return float(np.diff(np.interp([start, end], np.arange(len(contacts)), length))[0])

@@ -1,0 +1,57 @@
+"""Which cutters an impeller gets, and what is said where nothing can be planned."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from trunnion.findings import Refused
+from trunnion.geometry.sheet.skin import Skin
+from trunnion.model.feature import Recognition
+from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, on_hub, through_channel
+from trunnion.plan.impeller.wheel import wheel_of
+from trunnion.shop import load_shop
+
+TOOLS = load_shop(None).tools_for("N", "surface")
+
+
+def sizes(channel=4.5, fillet=1.5, height=11.6) -> WheelSizes:
+    return WheelSizes(channel=channel, fillet=fillet, height=height)
+
+
+def test_the_largest_ball_goes_through_the_channel_with_its_allowance():
+    assert through_channel(TOOLS, sizes(), 0.3).diameter == 3.0
+    assert through_channel(TOOLS, sizes(channel=6.7), 0.3).diameter == 6.0
+
+
+def test_flutes_are_longer_than_blades_are_high():
+    for height in (11.6, 20.0, 30.0):
+        tool = through_channel(TOOLS, sizes(channel=12.0, height=height), 0.3)
+        assert tool.flute_length > height
+
+
+def test_the_hubs_ball_is_as_round_as_the_fillets_and_the_fillets_ball_smaller():
+    assert on_hub(TOOLS, sizes()).corner_radius == 1.5
+    assert in_fillet(TOOLS, sizes()).corner_radius == 1.0
+
+
+def test_without_fillets_the_channel_alone_bounds_the_cutter():
+    assert in_fillet(TOOLS, sizes(fillet=0.0, channel=8.1)).diameter == 8.0
+
+
+def test_where_no_cutter_fits_there_is_none():
+    assert through_channel(TOOLS, sizes(channel=1.0), 0.3) is None
+    assert in_fillet(TOOLS, sizes(height=500.0)) is None
+
+
+def test_features_without_blades_make_no_wheel():
+    none = np.zeros((0, 3))
+    skin = Skin(
+        points=none,
+        normals=none,
+        triangles=none.astype(int),
+        face=np.zeros(0, int),
+        bound=0.0,
+    )
+    with pytest.raises(Refused, match="a wheel needs two blades"):
+        wheel_of(Recognition(family="impeller"), skin)
