@@ -233,6 +233,13 @@ def test_arcs_about_one_centre_that_do_not_climb_stay_arcs():
     assert lines[k + 1] == "C X+5.0 Y+0.0 DR+ R0"
 
 
+def test_a_centre_is_said_where_it_changes_and_after_a_rapid():
+    quarter = [(CCW, 0, 5, 0, 0, 0, 300.0), (CCW, -5, 0, 0, 0, 0, 300.0)]
+    away = [(RAPID, -5, 0, 9), (LINE, -5, 0, 0, 300.0), (CCW, 0, -5, 0, 0, 0, 300.0)]
+    blocks = [(RAPID, 5, 0, 50), (LINE, 5, 0, 0, 300.0), *quarter, *away, (RAPID, 0, -5, 50)]
+    assert lines_of(one(*blocks)).count("CC X+0.0 Y+0.0") == 2
+
+
 def test_helices_in_a_row_do_not_lead_the_tool_astray():
     # Quarters to and fro whose radii are rounded differently: each leads a little beside, never more than two units of the last decimal.
     blocks, at, z = [(RAPID, 0, 0, 50), (LINE, 0, 0, 0, 300.0)], np.zeros(2), 0.0
@@ -416,6 +423,17 @@ def test_a_cycle_in_a_tilted_plane_goes_along_its_z():
         ("BEGIN PGM B MM", "a program begins with BEGIN PGM, its name, and MM or INCH, once"),
         ("M30\nL X+5 FMAX", "stands after the end of the program; remove it"),
         ("END PGM B MM", "the program ends with END PGM A MM"),
+        ("CC X-5 Y+0\nCP IPA+360.000001 DR+ F9", "the arc ends "),
+        ("CC X+0 Y+0\nCP IPA+90 DR+ F9", "an arc without a radius; check its centre or CC"),
+        (
+            "CYCL DEF 32.2 HSC-MODE:0 TA0.1",
+            "cycle 32 with TA0.1 lets the tool lean by more than 0.05",
+        ),
+        (
+            "TOOL CALL 7 Z S500\nL X+0 Y+0 Z+5 FMAX\nL Z+0 F9",
+            "a feed move while the spindle stands; give S in TOOL CALL, and M3, first",
+        ),
+        ("5 L X+5 FMAX\n5 L X+6 FMAX", "block 5 comes after block 5: blocks are out of order"),
         ("5 L X+5 FMAX\n4 L X+6 FMAX", "block 4 comes after block 5: blocks are out of order"),
     ],
 )
@@ -457,6 +475,12 @@ def test_what_it_does_not_understand_is_refused_in_one_line(body, message):
         ),
         (PLANE, "PLANE SPATIAL SPA+30 SPC+0 TURN FMAX TABLE ROT", "PLANE SPATIAL needs SPA, SPB"),
         (PLANE, "PLANE EULER EULPR0 EULNU30 EULROT0 TURN FMAX", "this PLANE is not understood"),
+        (PLANE, "TOOL CALL 1 Z S400\nL A+5 C+0 FMAX", "A and C are understood in a rapid"),
+        (
+            PLANE,
+            f"CC X+5 Y+0\n{PLANE.splitlines()[4]}\nC X+10 Y+0 DR+",
+            "C without a centre; put CC first",
+        ),
         (PLANE, "PLANE RESET STAY\nL X+5", "it is not known where the rotary axes stand"),
     ],
 )
