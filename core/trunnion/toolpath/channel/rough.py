@@ -52,6 +52,8 @@ ALONG = 0.8
 """mm between contacts of a line."""
 NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached straight."""
+SAMPLES = 100
+"""Contacts of a layer at which axes are looked for."""
 SMALLEST_LEFTOVER = 0.02
 """Share of the passes of a channel: less than this lies beside its walls."""
 
@@ -153,6 +155,7 @@ def rough(
                 settings.chord,
                 0.0,
                 part,
+                SAMPLES,
             )
             passes += in_turn(done.passes)
             groups += [k] * (len(passes) - len(groups))
