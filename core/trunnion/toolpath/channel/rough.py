@@ -28,8 +28,8 @@ from trunnion.toolpath.contact_passes.blank_clearance import body_outside
 from trunnion.toolpath.contact_passes.channel_finish import (
     CLOSE,
     OFF,
-    QUICK,
     clearance_links,
+    link_feed,
     out_of_channel,
     outside_query,
     passes_along,
@@ -128,7 +128,7 @@ def rough(
         near=NEAR * data.width,
         turn=LINK_TURN,
         feed=data.feed,
-        link_feed=QUICK * data.feed,
+        link_feed=link_feed(data),
         close=CLOSE + data.depth,
         sphere=sphere,
         retreat=out_of_channel(drive, settings.safety),

@@ -43,8 +43,10 @@ LINK_TURN = math.radians(25.0)
 """Largest turn of the axis on a straight link."""
 NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached straight."""
-QUICK, CLOSE = 3.0, 0.5
-"""Times the feed of cuts: the feed of links that go where stock may stand beside them; and how far (mm) before material that ends."""
+QUICK, QUICKEST = 3.0, 6000.0
+"""Times the feed of cuts: the feed of links that go where stock may stand beside them; and its bound in mm/min, below any machine's."""
+CLOSE = 0.5
+"""mm before material where links go on at the feed of cuts."""
 AIR = 2.0
 """mm that a tool stays off the blank while it goes at rapid over it: its axes may turn one before the other."""
 SMALLEST_LEFTOVER = 0.003
@@ -121,7 +123,7 @@ def finished(
         near=NEAR * stepover,
         turn=LINK_TURN,
         feed=data.feed,
-        link_feed=QUICK * data.feed,
+        link_feed=link_feed(data),
         close=CLOSE + data.depth,
         sphere=sphere,
         retreat=out_of_channel(drive, safety),
@@ -189,6 +191,11 @@ def off_hub(lines: Sequence[Contacts], drive: ChannelDrive, tool: Tool) -> tuple
         edges = np.flatnonzero(np.diff(clear.astype(np.int8))).reshape(-1, 2)
         found += [line.of(slice(a, b)) for a, b in edges.tolist() if b - a > 1]
     return tuple(found)
+
+
+def link_feed(data: CuttingData) -> float:
+    """Return the feed in mm/min of links along the tool's axis."""
+    return max(data.feed, min(QUICK * data.feed, QUICKEST))
 
 
 def clearance_links(drive: ChannelDrive, tool: Tool) -> ClearanceLinks | None:
