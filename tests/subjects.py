@@ -37,8 +37,8 @@ SHELL = {"setup.machine": "Trunnion 650"}
 """Choices for the small casing: bosses all round ask for five axes."""
 WHEEL = {
     "setup.machine": "Trunnion 650",
-    "impeller.scallop": 0.1,
-    "impeller.layer": 3.0,
+    "impeller.scallop": 0.2,
+    "impeller.layer": 4.0,
     "verify.coverage": 0.3,
 }
 """Choices for the small wheel: on five axes, coarse, and without what no ball reaches in its sharp roots."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wheels
@@ -21,6 +21,7 @@ from trunnion.toolpath.contact_passes.channel_lines import (
 SHARES = st.floats(0.0, 1.0)
 
 
+@settings(deadline=None)
 @given(SHARES, SHARES)
 def test_coordinates_of_a_place_are_those_it_was_made_from(u, w):
     meridian = wheels.meridian()
@@ -49,6 +50,7 @@ def test_a_curve_goes_straight_on_beyond_its_ends():
     assert along[0] == pytest.approx([1.0, 0.0], abs=1e-3)
 
 
+@settings(deadline=None)
 @given(SHARES, SHARES)
 def test_the_hub_of_a_gap_lies_on_the_hub_and_its_normal_points_at_the_shroud(u, v):
     channel = wheels.channel()

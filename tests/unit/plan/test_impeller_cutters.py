@@ -8,7 +8,7 @@ import pytest
 from trunnion.findings import Refused
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Recognition
-from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, on_hub, through_channel
+from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, on_hub, on_walls, through_channel
 from trunnion.plan.impeller.wheel import wheel_of
 from trunnion.shop import load_shop
 
@@ -33,6 +33,12 @@ def test_flutes_are_longer_than_blades_are_high():
 def test_the_hubs_ball_is_as_round_as_the_fillets_and_the_fillets_ball_smaller():
     assert on_hub(TOOLS, sizes()).corner_radius == 1.5
     assert in_fillet(TOOLS, sizes()).corner_radius == 1.0
+
+
+def test_the_ball_on_walls_comes_down_to_the_rims_of_the_fillets():
+    assert through_channel(TOOLS, sizes(channel=6.7), 0.3).diameter == 6.0
+    assert on_walls(TOOLS, sizes(channel=6.7), 0.3).diameter == 3.0
+    assert on_walls(TOOLS, sizes(channel=6.7, fillet=0.0), 0.3).diameter == 6.0
 
 
 def test_without_fillets_the_channel_alone_bounds_the_cutter():

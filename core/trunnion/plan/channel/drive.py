@@ -25,7 +25,8 @@ class ChannelDrive:
     `channels`: those of the period; `in_channels` whether the operation goes through them. `copies` (rad): the turns about the axis that
     bring the period to all of its places, the first one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the
     shroud and towards the hub, where passes begin and end. `inward` says how deep below the blank's surface points (k, 3) lie, negative
-    outside. `blank` is the blank itself; `holds` says which tool axes (k, 3) the machine can hold, `fixed` whether fixtures stand there.
+    outside. `blank` is the blank itself; `holds` says which tool axes (k, 3) the machine can hold, `fixed` whether fixtures stand there,
+    `sharp` whether blades meet the hub without root fillets.
     """
 
     surface: SurfaceDrive
@@ -36,6 +37,7 @@ class ChannelDrive:
     in_channels: bool
     holds: Callable[[Floats], Bools]
     fixed: bool = False
+    sharp: bool = False
     tips: tuple[int, ...] = ()
     roots: tuple[int, ...] = ()
 

@@ -92,6 +92,13 @@ def through_channel(tools: Sequence[Tool], sizes: WheelSizes, allowance: float) 
     return _largest(tools, min(sizes.channel - 2.0 * allowance, np.inf), sizes.height + OVER)
 
 
+def on_walls(tools: Sequence[Tool], sizes: WheelSizes, allowance: float) -> Tool | None:
+    """Return the largest tapered ball that goes through the narrowest channel, and down to the rims of the root fillets: no larger than
+    they are."""
+    fillet = 2.0 * (sizes.fillet + ROUND) if sizes.fillet > 0.0 else np.inf
+    return _largest(tools, min(sizes.channel - 2.0 * allowance, fillet), sizes.height + OVER)
+
+
 def in_fillet(tools: Sequence[Tool], sizes: WheelSizes) -> Tool | None:
     """Return the largest tapered ball that goes into the root fillets with room to turn in them, and through the narrowest channel."""
     return _largest(

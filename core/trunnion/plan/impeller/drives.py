@@ -94,6 +94,7 @@ def channel_driven(
         blank=blank,
         inward=scene.once(("blank depth",), lambda: BlankDepth.of(blank, rotor)),
         holds=around.holds,
+        sharp=not any(f.with_role(*ROOT) for f in wheel.blades[: wheel.period]),
         fixed=bool(setup.fixtures or scene.fixtures),
         tips=tips,
         roots=roots,

@@ -22,7 +22,14 @@ from trunnion.plan.cutting.milling import (
 from trunnion.plan.freeform.cutters.choice import named
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
-from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, on_hub, sizes_of, through_channel
+from trunnion.plan.impeller.cutters import (
+    WheelSizes,
+    in_fillet,
+    on_hub,
+    on_walls,
+    sizes_of,
+    through_channel,
+)
 from trunnion.plan.impeller.settings import ImpellerRouteSettings
 from trunnion.plan.impeller.wheel import BLADE, EDGES, HUB, ROOT, SPLITTER, WALLS, Wheel
 from trunnion.plan.process import process_of
@@ -65,8 +72,10 @@ class ImpellerPlanState:
         wanted = {CHANNEL: s.rough_cutter, WALL: s.finish_cutter}.get(rule, s.fillet_cutter)
         if wanted:
             return named(self.shop, wanted)
-        if rule in (CHANNEL, WALL):
+        if rule == CHANNEL:
             return through_channel(tools, self.sizes, s.rough_allowance)
+        if rule == WALL:
+            return on_walls(tools, self.sizes, s.rough_allowance)
         return on_hub(tools, self.sizes) if rule == HUB_CUTTER else in_fillet(tools, self.sizes)
 
 

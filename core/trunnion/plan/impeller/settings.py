@@ -52,7 +52,8 @@ class ImpellerRouteSettings:
         "",
         label="Finishing cutter",
         catalogue="tools",
-        help="Name of the cutter that finishes blades and splitters; empty: as the roughing cutter is chosen.",
+        help="Name of the cutter that finishes blades and splitters; empty: the largest tapered ball that goes through the narrowest "
+        "place, no larger than the root fillets.",
     )
     fillet_cutter: str = setting(
         "",

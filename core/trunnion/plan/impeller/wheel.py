@@ -25,6 +25,8 @@ WALLS, EDGES, TIP, ROOT = (
     ("root_fillet",),
 )
 """Roles of a blade's faces."""
+SHORTEST = 1.0
+"""mm along the hub that a channel has at least."""
 EVEN = 1e-3
 """rad by which blades may be off their places for a period to repeat: 0.1 mm at a radius of 100."""
 
@@ -46,12 +48,15 @@ class Wheel:
         return tuple(t for f in some if f.kind == kind for t in f.with_role(*roles))
 
     def channels(self, skin: Skin, progress: Progress = NO_PROGRESS) -> tuple[BladeChannel, ...]:
-        """Return the channels of the first period, from a skin in the rotor's frame."""
+        """Return the channels of the first period, from a skin in the rotor's frame; raise `Refused` for walls that tell of none."""
         cambers: list[Camber] = []
         for f in self.blades[: self.period]:
             progress.check()
             feet = f.with_role(*ROOT) or f.tags
-            cambers.append(camber_of(skin, f.with_role(*WALLS), feet, self.meridian))
+            camber = camber_of(skin, f.with_role(*WALLS), feet, self.meridian)
+            if not np.isfinite(camber.angle.values).all():
+                raise Refused(f"{f.id}: its walls are too small to tell the channel beside them")
+            cambers.append(camber)
         step = 2.0 * math.pi / len(self.copies)
         closing = [*cambers, cambers[0].turned(step)]
         pairs = pairwise(closing)
@@ -78,8 +83,11 @@ def wheel_of(recognition: Recognition, skin: Skin) -> Wheel:
     angles = np.mod(angles[order] - angles[order[0]], 2.0 * math.pi)
     ordered = tuple(blades[k] for k in order.tolist())
     period, count = _period(ordered, angles, len(main))
+    meridian = _meridian(skin, hub, tips, ordered[0])
+    if meridian.hub.run < SHORTEST:
+        raise Refused("no channels to plan: the hub ends where the leading edges stand on it")
     return Wheel(
-        meridian=_meridian(skin, hub, tips, ordered[0]),
+        meridian=meridian,
         blades=ordered,
         angles=angles,
         period=period,

@@ -19,7 +19,12 @@ from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.channel_finish import finished, wanted_axes
-from trunnion.toolpath.contact_passes.channel_lines import between_toes, hub_of, lines_between
+from trunnion.toolpath.contact_passes.channel_lines import (
+    TOE_CLEARANCE,
+    between_toes,
+    hub_of,
+    lines_between,
+)
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
@@ -103,7 +108,9 @@ def hub(
         run = channel.meridian.hub.run
         ends = -settings.before / run, 1.0 + 0.5 * tool.radius / run
         u = np.linspace(*ends, max(2, math.ceil((ends[1] - ends[0]) * run / ALONG)))
-        for some in lines_between(hub_of(channel), u, *between_toes(channel, u), stepover):
+        # A ball touches the hub no nearer to a sharp root than it is round.
+        off = tool.corner_radius if drive.sharp else TOE_CLEARANCE
+        for some in lines_between(hub_of(channel), u, *between_toes(channel, u, off), stepover):
             lines += some
     return finished(
         [line.reversed() if k % 2 else line for k, line in enumerate(lines)],

@@ -28,8 +28,8 @@ from trunnion.toolpath.contact_passes.blank_clearance import body_outside
 from trunnion.toolpath.contact_passes.channel_finish import (
     CLOSE,
     OFF,
-    QUICK,
     clearance_links,
+    link_feed,
     out_of_channel,
     outside_query,
     passes_along,
@@ -52,6 +52,8 @@ ALONG = 0.8
 """mm between contacts of a line."""
 NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached straight."""
+SAMPLES = 100
+"""Contacts of a layer at which axes are looked for."""
 SMALLEST_LEFTOVER = 0.02
 """Share of the passes of a channel: less than this lies beside its walls."""
 
@@ -126,7 +128,7 @@ def rough(
         near=NEAR * data.width,
         turn=LINK_TURN,
         feed=data.feed,
-        link_feed=QUICK * data.feed,
+        link_feed=link_feed(data),
         close=CLOSE + data.depth,
         sphere=sphere,
         retreat=out_of_channel(drive, settings.safety),
@@ -153,6 +155,7 @@ def rough(
                 settings.chord,
                 0.0,
                 part,
+                SAMPLES,
             )
             passes += in_turn(done.passes)
             groups += [k] * (len(passes) - len(groups))

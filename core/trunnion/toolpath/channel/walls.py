@@ -16,7 +16,7 @@ from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contact_passes.channel_finish import finished, wanted_axes
+from trunnion.toolpath.contact_passes.channel_finish import finished, off_hub, wanted_axes
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.leaning_passes import grooving
@@ -87,6 +87,7 @@ def walls(
         )
     ball = grooving(tool, 0.0, 0.5 * math.pi)
     lines, findings = _lines(drive, ball, settings.chord, progress.part(0.0, 0.2))
+    lines = off_hub(lines, drive, tool) if drive.sharp else lines
     lean = math.radians(settings.lean)
     return finished(
         lines,

@@ -14,6 +14,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.channel.drive import ChannelDrive
+from trunnion.plan.channel.meridian import cylindrical
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits, thickened
@@ -42,8 +43,10 @@ LINK_TURN = math.radians(25.0)
 """Largest turn of the axis on a straight link."""
 NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached straight."""
-QUICK, CLOSE = 3.0, 0.5
-"""Times the feed of cuts: the feed of links that go where stock may stand beside them; and how far (mm) before material that ends."""
+QUICK, QUICKEST = 3.0, 6000.0
+"""Times the feed of cuts: the feed of links that go where stock may stand beside them; and its bound in mm/min, below any machine's."""
+CLOSE = 0.5
+"""mm before material where links go on at the feed of cuts."""
 AIR = 2.0
 """mm that a tool stays off the blank while it goes at rapid over it: its axes may turn one before the other."""
 SMALLEST_LEFTOVER = 0.003
@@ -120,7 +123,7 @@ def finished(
         near=NEAR * stepover,
         turn=LINK_TURN,
         feed=data.feed,
-        link_feed=QUICK * data.feed,
+        link_feed=link_feed(data),
         close=CLOSE + data.depth,
         sphere=sphere,
         retreat=out_of_channel(drive, safety),
@@ -140,6 +143,7 @@ def passes_along(
     chord: float,
     allowance: float,
     progress: Progress = NO_PROGRESS,
+    samples: int = SAMPLES,
 ) -> PointMilledPasses:
     """Return the passes along lines, in the order of these, with axes of much space: what the first query lets not be the next one may."""
     done = PointMilledPasses(passes=(), rest=tuple(lines), remaining=1.0)
@@ -147,7 +151,7 @@ def passes_along(
         share = progress.part(0.9 * n / len(queries), 0.9 * (n + 1) / len(queries))
         if not done.rest:
             break
-        point, normal = _some(done.rest)
+        point, normal = _some(done.rest, samples)
         found = open_axes(
             point,
             normal,
@@ -177,6 +181,23 @@ def out_of_channel(drive: ChannelDrive, safety: float) -> Retreat:
     return lambda tip, axis: deep + safety
 
 
+def off_hub(lines: Sequence[Contacts], drive: ChannelDrive, tool: Tool) -> tuple[Contacts, ...]:
+    """Return the stretches of lines on which the ball of a tool does not stand in the hub: above its radius in a sharp root."""
+    hub, found = drive.channels[0].meridian.hub, list[Contacts]()
+    for line in lines:
+        rz = cylindrical(line.point + tool.corner_radius * line.normal)[0]
+        away = np.linalg.norm(hub.places(hub.nearest(rz)) - rz, axis=1)
+        clear = np.concatenate([[False], away >= tool.corner_radius - OFF, [False]])
+        edges = np.flatnonzero(np.diff(clear.astype(np.int8))).reshape(-1, 2)
+        found += [line.of(slice(a, b)) for a, b in edges.tolist() if b - a > 1]
+    return tuple(found)
+
+
+def link_feed(data: CuttingData) -> float:
+    """Return the feed in mm/min of links along the tool's axis."""
+    return max(data.feed, min(QUICK * data.feed, QUICKEST))
+
+
 def clearance_links(drive: ChannelDrive, tool: Tool) -> ClearanceLinks | None:
     """Return the links of a tool over the blank; None where fixtures stand that it knows nothing of."""
     if drive.fixed:
@@ -187,12 +208,12 @@ def clearance_links(drive: ChannelDrive, tool: Tool) -> ClearanceLinks | None:
     )
 
 
-def _some(lines: Sequence[Contacts]) -> tuple[Floats, Floats]:
+def _some(lines: Sequence[Contacts], samples: int) -> tuple[Floats, Floats]:
     """Return some points and normals (k, 3) of lines, evenly many of each."""
     point, normal = (
         np.vstack([getattr(line, name) for line in lines]) for name in ("point", "normal")
     )
-    rows = np.unique(np.linspace(0, len(point) - 1, SAMPLES).astype(np.int64))
+    rows = np.unique(np.linspace(0, len(point) - 1, samples).astype(np.int64))
     return point[rows], normal[rows]
 
 

@@ -92,14 +92,16 @@ def between_walls(channel: BladeChannel, u: Floats, w: Floats, off: float) -> tu
     return (ends[0] - low) / span, (ends[1] - low) / span
 
 
-def between_toes(channel: BladeChannel, u: Floats) -> tuple[Floats, Floats]:
-    """Return the v (nu,), (nu,) of the toes of a channel's blades at u (nu,)."""
+def between_toes(
+    channel: BladeChannel, u: Floats, off: float = TOE_CLEARANCE
+) -> tuple[Floats, Floats]:
+    """Return the v (nu,), (nu,) that lie `off` mm off the toes of a channel's blades at u (nu,)."""
     zero = np.zeros_like(u)
     low, high = channel.lower.at(u, zero), channel.upper.at(u, zero)
-    off = TOE_CLEARANCE / channel.meridian.at(u, zero)[:, 0]
+    turn = off / channel.meridian.at(u, zero)[:, 0]
     return (
-        (channel.lower.toe(1, u) + off - low) / (high - low),
-        (channel.upper.toe(0, u) - off - low) / (high - low),
+        (channel.lower.toe(1, u) + turn - low) / (high - low),
+        (channel.upper.toe(0, u) - turn - low) / (high - low),
     )
 
 
