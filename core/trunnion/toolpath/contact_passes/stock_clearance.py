@@ -118,6 +118,7 @@ def grown(tool: Tool, thickness: float) -> Tool:
     neck = max(wide.neck_diameter, across)
     return replace(
         wide,
+        form="bull" if tool.form == "flat" else tool.form,
         diameter=across,
         corner_radius=tool.corner_radius + thickness,
         neck_diameter=neck,
