@@ -72,11 +72,12 @@ def _limits(exact: Floats, others: Floats, level: Floats) -> tuple[Floats, Float
     """Return the largest and the least radius at both ends of each span between levels, (k, 2) each."""
     outer, inner = _exact_limits(exact, level)
     before, bore = outer.copy(), inner.copy()
-    edges = np.vstack([others[:, [k, (k + 1) % 3]] for k in range(3)])
-    outside = ~_keeps_to(edges, level, before, 1.0)
-    inside = ~_keeps_to(edges, level, bore, -1.0)
-    _take_edges(*np.moveaxis(edges[outside], 1, 0), level, outer, bore.copy())
-    _take_edges(*np.moveaxis(edges[inside], 1, 0), level, before.copy(), inner)
+    sides = np.vstack([others[:, [k, (k + 1) % 3]] for k in range(3)])
+    high = sides[~_keeps_to(sides, level, before, 1.0)]
+    low = sides[~_keeps_to(sides, level, bore, -1.0)]
+    _take_edges(high[:, 0], high[:, 1], level, outer, bore.copy())
+    _take_edges(low[:, 0], low[:, 1], level, before.copy(), inner)
+    # What stands out of the round faces in neighbouring spans becomes one even ring.
     proud = np.asarray((outer > before + COINCIDENT).all(axis=1))
     edges = np.flatnonzero(np.diff(np.concatenate([[False], proud, [False]]).astype(np.int64)))
     for first, last in edges.reshape(-1, 2).tolist():
