@@ -16,6 +16,8 @@ from trunnion.tolerance import CHORD, COINCIDENT
 
 STEP = 2.0
 """mm between heights where what is no face of revolution is looked at: a boss stands free of its envelope by no more along the axis."""
+SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Where on an edge it is compared with the round faces."""
 EVEN = 1.0
 """mm that the rings which stand for bosses may be wider than what turning could leave."""
 DECIMALS = 6
@@ -69,9 +71,13 @@ def _levels(exact: Floats, low: float, high: float) -> Floats:
 def _limits(exact: Floats, others: Floats, level: Floats) -> tuple[Floats, Floats]:
     """Return the largest and the least radius at both ends of each span between levels, (k, 2) each."""
     outer, inner = _exact_limits(exact, level)
-    before = outer.copy()
-    for k in range(3):
-        _take_edges(others[:, k], others[:, (k + 1) % 3], level, outer, inner)
+    before, bore = outer.copy(), inner.copy()
+    sides = np.vstack([others[:, [k, (k + 1) % 3]] for k in range(3)])
+    high = sides[~_keeps_to(sides, level, before, 1.0)]
+    low = sides[~_keeps_to(sides, level, bore, -1.0)]
+    _take_edges(high[:, 0], high[:, 1], level, outer, bore.copy())
+    _take_edges(low[:, 0], low[:, 1], level, before.copy(), inner)
+    # What stands out of the round faces in neighbouring spans becomes one even ring.
     proud = np.asarray((outer > before + COINCIDENT).all(axis=1))
     edges = np.flatnonzero(np.diff(np.concatenate([[False], proud, [False]]).astype(np.int64)))
     for first, last in edges.reshape(-1, 2).tolist():
@@ -104,6 +110,22 @@ def _exact_limits(exact: Floats, level: Floats) -> tuple[Floats, Floats]:
         outer[rows] = np.maximum(outer[rows], radius)
         inner[rows] = np.minimum(inner[rows], radius)
     return outer, inner
+
+
+def _keeps_to(edges: Floats, level: Floats, limits: Floats, sense: float) -> Bools:
+    """Return which edges (n, 2, 3) nowhere pass limits (k, 2) outwards (sense 1) or inwards (-1), but for the chord error: rims of holes
+    in a round face are no more than it."""
+    keeps = np.ones(len(edges), dtype=bool)
+    for share in SHARES:
+        at = edges[:, 0] + share * (edges[:, 1] - edges[:, 0])
+        row = np.clip(np.searchsorted(level, at[:, 2], side="right") - 1, 0, len(limits) - 1)
+        part = (at[:, 2] - level[row]) / (level[row + 1] - level[row])
+        limit = limits[row, 0] + part * (limits[row, 1] - limits[row, 0])
+        # At the very height between two spans either one may hold.
+        below = np.where(part < COINCIDENT, limits[np.maximum(row - 1, 0), 1], limit)
+        limit = np.maximum(limit, below) if sense > 0.0 else np.minimum(limit, below)
+        keeps &= sense * (np.hypot(at[:, 0], at[:, 1]) - limit) <= CHORD
+    return keeps
 
 
 def _take_edges(a: Floats, b: Floats, level: Floats, outer: Floats, inner: Floats) -> None:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from milling import SETUP, mill
 from trunnion.findings import Refused
 from trunnion.geometry.development import Development
-from trunnion.geometry.frame import WORLD
+from trunnion.geometry.frame import WORLD, Frame
+from trunnion.model.blank import Revolved
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
+from trunnion.plan.contract import RollingGround
 from trunnion.toolpath.motion.rolled import laid_flat, rolled
+from trunnion.toolpath.stock.views import StockViews
 
 GROUND = Development(frame=WORLD, radius=100.0, height=0.0, slope=0.0, middle=0.0)
 
@@ -85,6 +91,28 @@ def test_a_path_past_half_a_turn_is_no_cut_all_the_way_back() -> None:
     back = laid_flat(path, GROUND, WORLD)
     jumps = np.abs(np.diff(back.position[:, 0])) > 100.0
     assert jumps.sum() == 1 and back.motion[1:][jumps] == [Motion.RAPID]
+
+
+def test_what_is_cut_over_a_ground_is_known_along_other_directions() -> None:
+    outline = np.array([[90.0, 0.0], [105.0, 0.0], [105.0, 40.0], [90.0, 40.0]])
+    views = StockViews(Revolved(frame=WORLD, outline=outline, material="EN AW-7075", density=2.8))
+    ground = RollingGround(
+        development=GROUND,
+        chord=0.01,
+        low=np.array([-60.0, 0.0]),
+        high=np.array([60.0, 40.0]),
+        profile=np.array([[0.0, 5.0], [20.0, 5.0], [40.0, 5.0]]),
+    )
+    assert views.over_ground(ground).heights == pytest.approx(5.0)
+    rows = [(-20.0, 20.0, 20.0, Motion.RAPID), (-20.0, 20.0, 1.0, Motion.LINE)]
+    views.cut_over(ground, flat_path([*rows, (20.0, 20.0, 1.0, Motion.LINE)]), mill(12.0))
+    # Seen along x the groove lies in the middle of the blank, a little over its ground.
+    side = Frame(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    seen = views.seen(replace(SETUP, frame=side), 1.0)
+    cell = tuple(((np.array([0.0, 20.0]) - seen.corner) / seen.cell).astype(int))
+    assert 101.0 <= seen.heights[cell] < 103.5
+    beside = tuple(((np.array([0.0, 35.0]) - seen.corner) / seen.cell).astype(int))
+    assert seen.heights[beside] == pytest.approx(105.0, abs=0.1)
 
 
 class Drilling:

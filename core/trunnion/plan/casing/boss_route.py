@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, warning
+from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
 from trunnion.plan.casing.bottom_route import BESIDE
@@ -21,9 +22,9 @@ from trunnion.plan.freeform.lands import (
     AROUND_TOOL,
     LATERAL,
     STOCK,
+    Land,
     LandClearances,
     PartAbove,
-    covered,
     lands_of,
 )
 from trunnion.plan.freeform.space import SurfaceSpace
@@ -41,6 +42,8 @@ DEEPEST = 1.0
 """mm: the thickest stock that comes off a top at once; more comes off in even steps."""
 MARGIN = 0.2
 """mm that a top's stock is taken for thicker than it is worked out to be."""
+SPARE = 1.0
+"""mm of space on all sides that a top's end mill has between what stands around the top."""
 WHOLE = 0.999
 """Share of a top that its end mill must cover."""
 LARGEST_SIDE = 12.0
@@ -90,11 +93,7 @@ def _plan_top(state: CasingPlanState, stage: Stage, boss: Feature, ground: Devel
         (
             t
             for t in _end_mills(state)
-            if all(
-                covered(land, part_above.free(land.z, t, clearances), t).area
-                >= WHOLE * land.region.area
-                for land in lands
-            )
+            if all(_covers(land, part_above.free(land.z, t, clearances), t) for land in lands)
         ),
         None,
     )
@@ -122,6 +121,15 @@ def _plan_top(state: CasingPlanState, stage: Stage, boss: Feature, ground: Devel
         why=f"{tool.name}: up to {trimmed(stock, 2)} mm stand on the top, taken in steps of {trimmed(depth, 2)} mm.",
         direction=direction,
     )
+
+
+def _covers(land: Land, free: Region, tool: Tool) -> bool:
+    """Return whether an end mill covers a land from positions that leave it some space to move."""
+    axis_region = free.offset(-tool.radius - SPARE)
+    if not axis_region:
+        return False
+    done = axis_region.offset(tool.radius - tool.corner_radius).intersect(land.region)
+    return done.area >= WHOLE * land.region.area
 
 
 def _over_top(state: CasingPlanState, boss: Feature, ground: DevelopedGround) -> float:
