@@ -18,6 +18,8 @@ from trunnion.progress import NO_PROGRESS, Progress
 
 SAMPLES = 1500
 """Samples that an area is judged by; one of them stands for less than a thousandth of it."""
+BESIDE = 1.0
+"""mm: how far to both sides of the height that decides whether a tool is free heights are told apart: much, to rounding."""
 FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
 """Steps of an even spread over a square, by the golden ratio and its square."""
 
@@ -93,18 +95,21 @@ def reached(
     # thick as it is: one as round as a bowl touches it everywhere from one place, and has no way to go in it.
     off = allowance + 2.0 * space.skin.bound
     tip = tip_at(tool, samples.point[rows] + off * samples.normal[rows], samples.normal[rows], axis)
-    plan, lowest = tip[:, :2], float(space.low[2]) - space.setup.clearance - tool.gauge_length
-    top = space.skin.drop.drop(plan, lower_side(tool, allowance), lowest, progress) + allowance
+    plan = tip[:, :2]
+    # Only on which side of a height the tip is matters: what lies far from that is never searched to its end.
+    near = tip[:, 2] - allowance
+    side = lower_side(tool, allowance)
+    top = space.skin.drop.drop(plan, side, near - BESIDE, progress, near + BESIDE) + allowance
     highest = float(space.skin.points[:, 2].max())
     clear = (top - tip[:, 2] < LIFTED) & (tip[:, 2] > space.low[2] - tolerance.SEW)
     for z0, r0, _, r1 in tool.profile():
         # What is no wider than the cutter goes where it has been.
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:
             some = np.flatnonzero(clear)[tip[clear, 2] + z0 - clearance < highest]
-            over = space.skin.drop.drop(
-                plan[some], level_disc(max(r0, r1) + HOLDER_CLEARANCE), lowest, progress
-            )
-            clear[some] = over + clearance < tip[some, 2] + z0
+            near = tip[some, 2] + z0 - clearance
+            disc = level_disc(max(r0, r1) + HOLDER_CLEARANCE)
+            over = space.skin.drop.drop(plan[some], disc, near - BESIDE, progress, near + BESIDE)
+            clear[some] = over < near
     found[rows] = clear
     return found
 

@@ -34,7 +34,8 @@ QUERY_SPACING, DOUBT = 1.0, 1.5
 """mm: one position of each cube of this width, and of each side that faces turn there, is queried first; and by how much wider and lower
 shank and holder are taken then, for its neighbours' sake."""
 SHOWN = 1.0
-"""mm: what shank and holder are clear of by more counts no better, and what they are in by more no worse."""
+"""mm: what shank and holder are clear of by more counts no better, and what they are in by more no worse; nor does a cutter that is lifted
+by more leave more."""
 HOLDER_CLEARANCE = 0.2
 """mm that shank and holder keep from adjacent walls."""
 
@@ -111,8 +112,12 @@ def _lifted_over(
         tip = tip_at(tool, position[up], normal[up], axis)
         # It touches at its own position at least: nothing that is lower by more than triangles are off has to be looked at.
         floor = np.maximum(tip[:, 2] + 2.0 * thinner, lowest)
-        top = skin.drop.drop(tip[:, :2], lower_side(tool, thinner), floor, progress) + thinner
-        lift[up] = top - tip[:, 2] - limit
+        # Nor does it matter where it would be that is lifted far.
+        most = np.maximum(floor, tip[:, 2] + SHOWN)
+        side = lower_side(tool, thinner)
+        lift[up] = (
+            skin.drop.drop(tip[:, :2], side, floor, progress, most) + thinner - tip[:, 2] - limit
+        )
         return lift
 
     return over
