@@ -87,7 +87,9 @@ def walls(
         )
     ball = grooving(tool, 0.0, 0.5 * math.pi)
     lines, findings = _lines(drive, ball, settings.chord, progress.part(0.0, 0.2))
-    lines = off_hub(lines, drive, tool) if drive.sharp else lines
+    if drive.sharp:
+        lines, left = off_hub(lines, drive, tool)
+        findings = (*findings, *left)
     lean = math.radians(settings.lean)
     return finished(
         lines,

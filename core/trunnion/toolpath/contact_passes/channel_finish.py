@@ -181,8 +181,11 @@ def out_of_channel(drive: ChannelDrive, safety: float) -> Retreat:
     return lambda tip, axis: deep + safety
 
 
-def off_hub(lines: Sequence[Contacts], drive: ChannelDrive, tool: Tool) -> tuple[Contacts, ...]:
-    """Return the stretches of lines on which the ball of a tool does not stand in the hub: above its radius in a sharp root."""
+def off_hub(
+    lines: Sequence[Contacts], drive: ChannelDrive, tool: Tool
+) -> tuple[tuple[Contacts, ...], tuple[Finding, ...]]:
+    """Return the stretches of lines on which the ball of a tool does not stand in the hub, above its radius in a sharp root, and what is
+    left below."""
     hub, found = drive.channels[0].meridian.hub, list[Contacts]()
     for line in lines:
         rz = cylindrical(line.point + tool.corner_radius * line.normal)[0]
@@ -190,7 +193,17 @@ def off_hub(lines: Sequence[Contacts], drive: ChannelDrive, tool: Tool) -> tuple
         clear = np.concatenate([[False], away >= tool.corner_radius - OFF, [False]])
         edges = np.flatnonzero(np.diff(clear.astype(np.int8))).reshape(-1, 2)
         found += [line.of(slice(a, b)) for a, b in edges.tolist() if b - a > 1]
-    return tuple(found)
+    whole, kept = (sum(float(c.travel(0.0)[-1]) for c in some) for some in (lines, found))
+    if kept > (1.0 - SMALLEST_LEFTOVER) * whole:
+        return tuple(found), ()
+    feature = drive.surface.feature
+    left = warning(
+        "wheel.left",
+        f"{100.0 * (1.0 - kept / whole):.1f} % of the passes over {feature} lie deeper in a sharp root than {tool.name} comes",
+        feature,
+        remedy="choose a smaller cutter, or give the roots fillets",
+    )
+    return tuple(found), (left,)
 
 
 def link_feed(data: CuttingData) -> float:
