@@ -38,6 +38,10 @@ class RawCurve:
     is_bridge: Bools
 
 
+ROUNDING = 1e-7
+"""mm: grid that points of chords are rounded to where they can't be cut exactly."""
+
+
 def grown(boundary: Segments, loops: Ints, distance: float) -> tuple[shapely.Geometry, Chords]:
     """Return the area left of closed loops grown (positive) or shrunk (negative) by a distance in mm, and the chords it consists of.
 
@@ -50,12 +54,20 @@ def grown(boundary: Segments, loops: Ints, distance: float) -> tuple[shapely.Geo
     real = count[owner] > 1
     _, line = np.unique(owner[real], return_inverse=True)
     lines = np.asarray(shapely.linestrings(chords.points[real], indices=line))
-    faces = shapely.get_parts(
-        shapely.polygonize(np.asarray([shapely.node(shapely.multilinestrings(lines))]))
-    )
+    faces = shapely.get_parts(shapely.polygonize(_noded(lines)))
     if len(faces) == 0:
         return shapely.MultiPolygon(), chords
     return shapely.union_all(faces[_margin(boundary, distance, faces) > 0.0]), chords
+
+
+def _noded(lines: NDArray[np.object_]) -> NDArray[np.object_]:
+    """Return lines (1,) cut where they meet. Where the exact way does not come to an end, as between nearly parallel chords, their
+    points are rounded to a grid far below any tolerance: that always does."""
+    try:
+        noded = np.asarray([shapely.node(shapely.multilinestrings(lines))])
+    except shapely.errors.GEOSException:
+        noded = np.asarray([shapely.union_all(lines, grid_size=ROUNDING)])
+    return noded
 
 
 def _margin(boundary: Segments, distance: float, faces: NDArray[np.object_]) -> Floats:
