@@ -14,6 +14,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Refused
+from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region, union_all
 from trunnion.model.feature import Feature
 from trunnion.plan.freeform.reach import AreaSamples
@@ -151,7 +152,8 @@ class FreeformPocket:
 
     def overhang_rims(self) -> tuple[WallGuide, ...]:
         """Return the upper edges of walls that lean over level floors, as seen from above: what stands outside of them down to the floor is
-        cut by a flank that goes along them, like a wall's."""
+        cut by a flank that goes along them, like a wall's. Where a fillet at a wall's foot comes out from under its edge, the flank keeps off
+        it as off the fillet of an upright wall there, which is no smaller."""
         if self.hang <= 0.0:
             return ()
         found = []
@@ -161,10 +163,17 @@ class FreeformPocket:
             if not hanging:
                 continue
             material = self.space.section(z)
+            feet = level.boundary.intersect(material)
             for curve in level.boundary.curves():
                 rim = on_rim(curve, hanging) & ~on_rim(curve, material)
                 found += [
-                    WallGuide(curve=run, top=self.top, bottom=level.bottom, fillet=0.0, faces=())
+                    WallGuide(
+                        curve=run,
+                        top=self.top,
+                        bottom=level.bottom,
+                        fillet=self.fillet if _meets(run, feet) else 0.0,
+                        faces=(),
+                    )
                     for run in runs(curve, rim)
                 ]
         return tuple(found)
@@ -187,6 +196,16 @@ class FreeformPocket:
             levels.append(DriveLevel(top=above, bottom=z, wanted=wanted, boundary=boundary))
             above = z
         return floors, tuple(levels)
+
+
+def _meets(curve: Curve, region: Region) -> bool:
+    """Return whether a curve runs along a region's boundary or into it somewhere."""
+    if not region:
+        return False
+    segments = curve.segments()
+    middles = segments.at(np.arange(len(segments)), 0.5 * segments.length)
+    points = np.vstack([curve.points, middles])
+    return bool((region.signed_distance(points) > -tolerance.SEW).any())
 
 
 def _beside(outline: Region, mouth: Region, past: float) -> Region:
