@@ -4,6 +4,8 @@ BIN := .venv/bin
 OUT ?= out/demo
 export QT_QPA_PLATFORM ?= offscreen
 export PYTHONHASHSEED ?= 0
+# Two processes of tests fill two cores: threads of numpy would only wait for each other.
+export OPENBLAS_NUM_THREADS ?= 1
 # Tests start processes by the hundred; without compiled files each would compile all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 

@@ -151,9 +151,9 @@ class FreeformPocket:
         return self._floors[0]
 
     def overhang_rims(self) -> tuple[WallGuide, ...]:
-        """Return the upper edges of walls that lean over level floors, as seen from above: what stands outside of them down to the floor is
-        cut by a flank that goes along them, like a wall's. Where a fillet at a wall's foot comes out from under its edge, the flank keeps off
-        it as off the fillet of an upright wall there, which is no smaller."""
+        """Return the upper edges of walls that lean over level floors, seen from above: what stands outside of them down to the floor is
+        cut by a flank that goes along them, like a wall's. Where a fillet at a wall's foot comes out from under its edge, the flank keeps
+        off it as off the fillet of an upright wall there."""
         if self.hang <= 0.0:
             return ()
         found = []
