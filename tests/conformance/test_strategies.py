@@ -30,6 +30,15 @@ from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 
 by_name = pytest.mark.parametrize("name", STRATEGIES)
+DEAR = ("channel.rough", "channel.hub", "impeller")
+"""Strategies and families whose paths take long: checks that make them several times, or prove them, are of the long tests."""
+
+
+def dear_ones_long(names):
+    return [pytest.param(n, marks=pytest.mark.long) if n in DEAR else n for n in names]
+
+
+by_name_often = pytest.mark.parametrize("name", dear_ones_long(STRATEGIES))
 COARSE = {"surface.scallop": 0.3}
 """Scallops in mm for passes that nobody proves."""
 NOT_LESS = 0.95
@@ -245,7 +254,7 @@ def test_no_block_stands_still(name):
     assert ((path.lengths()[1:] > 1e-4) | turns).all()
 
 
-@by_name
+@by_name_often
 def test_the_same_input_gives_the_same_bytes(name):
     first, again = made(name), case(name).path()
     for column in ("position", "axis", "motion", "centre", "feed", "mark"):
@@ -281,7 +290,7 @@ def standing(name: str, tool: Tool, found: OperationPath | None) -> float:
 
 
 @pytest.mark.parametrize("times", (LARGER, LITTLE_LARGER))
-@by_name
+@by_name_often
 def test_a_smaller_cutter_leaves_no_more(name, times):
     tool = case(name).operation.tool
     larger = scaled(tool, times)
@@ -301,7 +310,7 @@ def test_it_brings_its_faces_nearer_to_what_is_wanted(name):
         assert standing(name, tool, made(name)) < standing(name, tool, None) - UNEVEN
 
 
-@pytest.mark.parametrize("family", PLANNERS)
+@pytest.mark.parametrize("family", dear_ones_long(PLANNERS))
 def test_no_path_meets_more_than_its_strategy_declares(family):
     session = until(family, "verify")
     proofs = {p.operation: p for p in session.verdict.operations}
@@ -315,7 +324,7 @@ def test_no_path_meets_more_than_its_strategy_declares(family):
     assert more == set()
 
 
-@by_name
+@by_name_often
 def test_it_stops_soon_after_it_was_asked_to(name):
     made(name)
     check_cancel(lambda progress: case(name).path(progress=progress, alone=True))

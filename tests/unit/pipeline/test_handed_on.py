@@ -18,6 +18,7 @@ from trunnion.pipeline.proof.external_nc import verify_texts
 from trunnion.pipeline.steps import STEPS, step_named
 from trunnion.pipeline.toolpaths import make_paths
 from trunnion.progress import NO_PROGRESS
+from trunnion.toolpath.stock.views import StockViews
 
 COARSE = {"repair.rounds": 0, "verify.cell": 1.0, "verify.spacing": 3.0}
 
@@ -77,19 +78,16 @@ def test_what_was_cut_away_from_above_is_planned_as_gone_from_below(both_sides):
 
 def planned_stock(engine, session):
     """Return the stock that the first operation of the second setup is planned on."""
-    import trunnion.pipeline.toolpaths as toolpaths
+    seen, own = [], StockViews.seen
 
-    seen = []
-    own = toolpaths.SetupScene.stock
-
-    def noted(self, setup):
-        found = own(self, setup)
-        if self.setup.name == "S2":
+    def noted(self, setup, *cell):
+        found = own(self, setup, *cell)
+        if setup.name == "S2":
             seen.append(found)
         return found
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(toolpaths.SetupScene, "stock", noted)
+        patch.setattr(StockViews, "seen", noted)
         make_paths(session, engine.context_of(session), NO_PROGRESS)
     return seen[0]
 

@@ -12,6 +12,7 @@ from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import make_paths
 from trunnion.plan.contract import DriveNeeds, driven_by, planner_for
 from trunnion.progress import NO_PROGRESS
+from trunnion.shop import load_shop
 
 
 class WedgePlanner:
@@ -64,7 +65,7 @@ def test_a_family_without_a_planner_is_refused_with_what_to_do() -> None:
     with pytest.raises(
         BadInput,
         match="parts of the family spindle are segmented and measured, but not planned yet; for flat pockets and "
-        "outlines choose recognize.family = casing or panel or surface",
+        "outlines choose recognize.family = casing or impeller or panel or surface",
     ):
         planner_for("spindle")
 
@@ -82,9 +83,11 @@ def test_a_drive_that_a_planner_does_not_make_is_an_error_that_names_strategy_an
 
 
 @pytest.mark.parametrize("family", registry.names("planners"))
-def test_our_planners_drive_every_strategy_that_is_there(routed, family) -> None:
+def test_our_planners_drive_every_strategy_of_their_plans(routed, family) -> None:
     operation = routed[1].process.operations[0]
-    made = {registry.get("strategies", name).drive for name in registry.names("strategies")}
+    plans = [p for p in load_shop().plans.values() if p.family == family]
+    made = {registry.get("strategies", s.strategy).drive for p in plans for s in p.stages}
+    assert made
     for drive in made:
         with pytest.raises(AttributeError):  # it goes for the scene: a drive of this class is made
             planner_for(family).drive(operation, DriveNeeds(drive=drive), None, NO_PROGRESS)

@@ -97,7 +97,8 @@ def test_blades_stand_in_order_and_splitters_between_their_main_blades(seed: int
     assert sum(bool(f.attributes.get("pair")) for f in blades) == 2
 
 
-@pytest.mark.parametrize("seed", some(10, *QUICK))
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(10))
 def test_sizes_are_those_that_it_was_made_with(seed: int) -> None:
     made, part = wheel(seed)
     table = size_table(recognized(part), part.graph(), part)
