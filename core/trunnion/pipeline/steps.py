@@ -39,7 +39,7 @@ from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
 from trunnion.post.settings import PostSettings
 from trunnion.progress import Progress
-from trunnion.recognize.contract import Measuring, usual_blank
+from trunnion.recognize.contract import Measuring, registered_family, usual_blank
 from trunnion.registry import FAMILIES, FIXES, PART_KINDS, PLANNERS, STRATEGIES
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
@@ -118,9 +118,7 @@ def _seen_from_side(found: Recognition, session: Session, context: Context) -> R
 def measured_anew(session: Session, context: Context) -> Session:
     """Return the session with the sizes of features whose faces a person changed, where the family can measure them."""
     found = _recognition(session)
-    family = (
-        registry.get(FAMILIES, found.family)() if found.family in registry.names(FAMILIES) else None
-    )
+    family = registered_family(found.family)
     if not isinstance(family, Measuring):
         return session
     settings: Any = checked(choose(family.settings, session.choices))

@@ -1,15 +1,40 @@
-"""What no route can be made for: blanks that a machine's travel does not take, more tools than its magazine has places for."""
+"""What no route can be made for: open faces, machines without the axes that a part needs or with too little travel for its blank, and more
+tools than a magazine has places for."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from trunnion.findings import Finding, error, warning
+from trunnion.findings import BadInput, Finding, error, warning
 from trunnion.model.blank import Blank
+from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
 from trunnion.shop import Shop
 from trunnion.units import trimmed
+
+
+def refuse_open(is_closed: bool) -> None:
+    """Raise `BadInput` for faces that enclose no material."""
+    if not is_closed:
+        raise BadInput("nothing can be planned for faces that enclose no material")
+
+
+def without_axes(
+    recognition: Recognition, setups: Sequence[Setup], shop: Shop, why: str, leaning: str = ""
+) -> list[Finding]:
+    """Return an error where the machine of the first setup has no rotary axes, which a part needs: `why`, and what they must do."""
+    if shop.machine(setups[0].machine).rotary:
+        return []
+    wanted = f"choose a machine with rotary axes{leaning} (setup.machine)"
+    return [
+        error(
+            "route.not-planned",
+            f"{why}, and the machine has no rotary axes",
+            *(f.id for f in recognition),
+            remedy=wanted,
+        )
+    ]
 
 
 def too_large(blank: Blank, setups: Sequence[Setup], shop: Shop) -> list[Finding]:

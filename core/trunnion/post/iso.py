@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
-from trunnion.findings import BadCall
 from trunnion.model.motion.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
 from trunnion.post.header import Header
 from trunnion.post.iso_words import iso_words
 from trunnion.post.settings import PostSettings
+from trunnion.post.words import check_one_setup
 from trunnion.post.writer.program import ProgramWriter, comment
 from trunnion.post.writer.tip_control import TipWriter
 from trunnion.shop.kinematics import NO_WORK_POSITIONS, WorkPositions
@@ -45,7 +45,7 @@ class IsoDialect:
         work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> str:
         """Return the text of one setup's program."""
-        self._check_one(programs)
+        check_one_setup(self.words.title, programs)
         work_position = work_positions.get(programs[0].setup.name)
         follows = self.words.directions and work_position and work_position.machine.rotary
         writer_class = TipWriter if follows else ProgramWriter
@@ -66,7 +66,7 @@ class IsoDialect:
         """Return the program of the one setup."""
         from trunnion.post.readers.iso import read_iso
 
-        self._check_one(setups)
+        check_one_setup(self.words.title, setups)
         return (
             read_iso(
                 text,
@@ -83,7 +83,3 @@ class IsoDialect:
         from trunnion.post.readers.word_address.interpreter import Control
 
         return Control
-
-    def _check_one(self, given: Sequence[Program] | Sequence[Setup]) -> None:
-        if len(given) != 1:
-            raise BadCall(f"a {self.words.title} program holds one setup; got {len(given)}")

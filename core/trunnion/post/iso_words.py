@@ -14,7 +14,7 @@ CENTRES = ("start", "absolute")
 """Where I and J of an arc count from: its start, or the zero of the work offset."""
 ROLES = ("radius", "length", "dwell", "turns", "tolerance", "joining", "highest", "retract", "peck")
 """What a control may have letters for, beside N, F, S, T, X, Y, Z, I and J which are the same on all."""
-_PLACEHOLDERS = {
+_IN_BRACES = {
     "opening": ("program",),
     "start": ("units", "tolerance", "offset"),
     "restart": ("offset",),
@@ -137,9 +137,9 @@ def checked_iso_words(name: str, words: IsoWords) -> IsoWords:
         value = getattr(words, word)
         if word in _KEYS:
             _check_keys(name, word, value)
-        if word in _PLACEHOLDERS:
+        if word in _IN_BRACES:
             lines = (value,) if isinstance(value, str) else value
-            check_placeholders(name, word, lines, _PLACEHOLDERS[word])
+            check_braces(name, word, lines, _IN_BRACES[word])
     for role, letter in words.letters.items():
         if role not in ROLES or not (len(letter) == 1 or letter.endswith("=")):
             raise BadInput(
@@ -176,7 +176,7 @@ def _check_cycles(name: str, words: IsoWords) -> None:
     for kind in (*words.cycles, *words.cycle_calls):
         if kind not in list(CycleKind):
             raise BadInput(f"dialect {name}: cycles knows {', '.join(CycleKind)}; got {kind}")
-    check_placeholders(name, "cycle_calls", tuple(words.cycle_calls.values()), CALL)
+    check_braces(name, "cycle_calls", tuple(words.cycle_calls.values()), CALL)
     for kind in words.cycles:
         needed = ["retract", *(["peck"] * (kind in PECKING)), *(["dwell"] * (kind in WAITING))]
         missing = [role for role in needed if role not in words.letters]
@@ -200,9 +200,7 @@ def check_directions(name: str, words: IsoWords) -> None:
         raise BadInput(f"dialect {name}: {what}")
 
 
-def check_placeholders(
-    name: str, word: str, lines: tuple[str, ...], known: tuple[str, ...]
-) -> None:
+def check_braces(name: str, word: str, lines: tuple[str, ...], known: tuple[str, ...]) -> None:
     try:
         field_names = [
             field_name

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 from trunnion.findings import BadInput
 from trunnion.model.motion.cycle import CycleKind
-from trunnion.post.iso_words import CALL, IsoWords, check_directions, check_placeholders
+from trunnion.post.iso_words import CALL, IsoWords, check_braces, check_directions
 from trunnion.post.words import dialect_words
 
-_PLACEHOLDERS = {
+_IN_BRACES = {
     "start": ("units", "tolerance", "offset"),
     "tool_change": ("tool", "name", "spindle"),
     "speed": ("spindle",),
@@ -50,14 +50,14 @@ class KlartextWords(IsoWords):
 def klartext_words(name: str) -> KlartextWords:
     """Return the words of a control, read from our resources; raise `BadInput` for wrong ones."""
     words = dialect_words(KlartextWords, name)
-    for word, known in (*_PLACEHOLDERS.items(), *((w, ()) for w in _WITHOUT)):
+    for word, known in (*_IN_BRACES.items(), *((w, ()) for w in _WITHOUT)):
         value = getattr(words, word)
-        check_placeholders(name, word, (value,) if isinstance(value, str) else value, known)
+        check_braces(name, word, (value,) if isinstance(value, str) else value, known)
     for kind in words.cycle_calls:
         if kind not in list(CycleKind):
             raise BadInput(f"dialect {name}: cycles knows {', '.join(CycleKind)}; got {kind}")
     calls = tuple(words.cycle_calls.values())
-    check_placeholders(name, "cycle_calls", calls, (*CALL, *OWN_CALL))
+    check_braces(name, "cycle_calls", calls, (*CALL, *OWN_CALL))
     check_directions(name, words)
     if words.turns_a_block < 1:
         raise BadInput(f"dialect {name}: turns_a_block must be above 0; got {words.turns_a_block}")

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import tomllib
 import unicodedata
-from collections.abc import Container
+from collections.abc import Container, Sized
 from dataclasses import MISSING, fields
 from functools import cache
 from importlib.resources import files
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-from trunnion.findings import BadInput, Refused
+from trunnion.findings import BadCall, BadInput, Refused
 from trunnion.model.motion.program import STOPPED, ProgramSection
 from trunnion.model.spindle import per_minute
 
@@ -80,6 +80,12 @@ def _checked(kind: Any, value: Any, what: str) -> Any:
         dict: "a table of texts",
     }[shape]
     raise BadInput(f"{what} must be {words}; got {value!r}")
+
+
+def check_one_setup(title: str, given: Sized) -> None:
+    """Raise `BadCall` unless there is one program, or one setup, of a control whose texts hold one."""
+    if len(given) != 1:
+        raise BadCall(f"a {title} program holds one setup; got {len(given)}")
 
 
 def plain(text: str, longest: int) -> str:

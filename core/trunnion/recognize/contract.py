@@ -211,7 +211,7 @@ class FamilyBlank(Protocol):
 
 def usual_blank(family: str) -> str:
     """Return the kind of blank that parts of a family are usually cut from."""
-    found = _registered(family)
+    found = registered_family(family)
     return found.blank if isinstance(found, FamilyBlank) else "box"
 
 
@@ -250,19 +250,19 @@ def sharing_families() -> tuple[str, ...]:
 
 def exclusive_kinds(family: str) -> tuple[str, ...]:
     """Return the kinds of features of a family that share out faces; none where the family has none or is not registered."""
-    found = _registered(family)
+    found = registered_family(family)
     return found.exclusive if isinstance(found, Sharing) else ()
 
 
 def describable_kinds(family: str) -> tuple[str, ...]:
     """Return the kinds of features of a family that a person may give other faces; none where the family can't describe them."""
-    found = _registered(family)
+    found = registered_family(family)
     return found.describable if isinstance(found, Describing) else ()
 
 
 def smallest_sizes(family: str) -> tuple[Smallest, ...]:
     """Return the sizes of the part that are the smallest of its features' by a family; none where it has none or is not registered."""
-    found = _registered(family)
+    found = registered_family(family)
     return found.smallest if isinstance(found, Bounding) else ()
 
 
@@ -270,11 +270,12 @@ def analysed_sizes(
     found: Recognition, graph: FaceGraph, part: Any, progress: Progress
 ) -> tuple[SizeEntry, ...]:
     """Return the sizes that a part's family measures besides those of its features; none where it has none or is not registered."""
-    family = _registered(found.family)
+    family = registered_family(found.family)
     return (
         family.analysed(found, graph, part, progress) if isinstance(family, SizeMeasuring) else ()
     )
 
 
-def _registered(family: str) -> Any:
+def registered_family(family: str) -> Any:
+    """Return the family that is registered under a name, None where there is none."""
     return registry.get(FAMILIES, family)() if family in registry.names(FAMILIES) else None

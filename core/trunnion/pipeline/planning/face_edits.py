@@ -11,13 +11,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from trunnion import registry
 from trunnion.findings import BadCall, BadInput
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.planning.manual_edits import free_id, without_faces
-from trunnion.recognize.contract import Describing, describable_kinds
-from trunnion.registry import FAMILIES
+from trunnion.recognize.contract import Describing, describable_kinds, registered_family
 from trunnion.settings import checked, choose
 
 if TYPE_CHECKING:
@@ -118,9 +116,7 @@ def _with_changed(
 
 def _describing(session: Session) -> tuple[Describing, Any]:
     found = _recognition(session)
-    family = (
-        registry.get(FAMILIES, found.family)() if found.family in registry.names(FAMILIES) else None
-    )
+    family = registered_family(found.family)
     if not isinstance(family, Describing):
         raise BadInput(
             f"features of the family {found.family or 'none'} can't be given other faces by hand"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trunnion.findings import BadInput, Finding, error
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.casing.drives import holes_driven, plane_driven, sides_driven
@@ -14,7 +13,7 @@ from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.casing.route import CUTTER_RULES, make_casing_route
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.cutting.milling import CuttingSettings
-from trunnion.plan.feasibility import too_large
+from trunnion.plan.feasibility import refuse_open, too_large, without_axes
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.prismatic.drive import PlaneDrive
@@ -26,6 +25,10 @@ from trunnion.progress import Progress
 if TYPE_CHECKING:
     from trunnion.part.part import Part
 
+NEEDS_AXES = "bosses are milled along their own normals"
+LEANING = " that leans the tool by 90 degrees"
+"""Why a machine without rotary axes is refused, and what they must do."""
+
 
 class CasingPlanner:
     """Plans the milled side of a casing: bottoms laid flat, bosses along their normals, holes along their axes."""
@@ -36,15 +39,16 @@ class CasingPlanner:
 
     def can_plan(self, part: Part) -> None:
         """Raise `BadInput` for faces that enclose no material."""
-        if not part.is_closed:
-            raise BadInput("nothing can be planned for faces that enclose no material")
+        refuse_open(part.is_closed)
 
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_casing_route`, or why the blank fits no machine."""
         route = job.settings_of(RouteSettings)
         plan = typical_plan(job.shop, job.recognition.family, route.plan, CUTTER_RULES)
         material = job.shop.material(job.blank.material)
-        findings = too_large(job.blank, job.setups, job.shop) or self._without_axes(job)
+        findings = too_large(job.blank, job.setups, job.shop) or without_axes(
+            job.recognition, job.setups, job.shop, NEEDS_AXES, LEANING
+        )
         if findings:
             return process_of(
                 (), findings, plan=plan, material=material, setups=job.setups, shop=job.shop
@@ -66,18 +70,6 @@ class CasingPlanner:
             progress=job.progress,
         )
         return make_casing_route(state, plan)
-
-    def _without_axes(self, job: RouteJob) -> list[Finding]:
-        if job.shop.machine(job.setups[0].machine).rotary:
-            return []
-        return [
-            error(
-                "route.not-planned",
-                "bosses are milled along their own normals, and the machine has no rotary axes",
-                *(f.id for f in job.recognition),
-                remedy="choose a machine with rotary axes that leans the tool by 90 degrees (setup.machine)",
-            )
-        ]
 
     def drive(
         self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress

@@ -10,10 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.findings import Refused
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.blank import Blank
+from trunnion.model.tool import Tool
 from trunnion.plan.channel.blade_channel import BladeChannel
 from trunnion.plan.channel.meridian import cylindrical
+from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.drive import SurfaceDrive
 
 
@@ -45,6 +48,14 @@ class ChannelDrive:
     def is_empty(self) -> bool:
         """Whether there is nothing to cut."""
         return not self.in_channels and not self.surface.faces
+
+    def leaning_query(self, work: str) -> Callable[[Tool], ClearanceQuery]:
+        """Return what tells for a tool which of its poses are clear; raise `Refused`, naming the work, on a machine that can't lean it."""
+        if self.surface.query_for is None:
+            raise Refused(
+                f"{self.surface.feature}: {work} leans the tool; choose a machine with rotary axes"
+            )
+        return self.surface.query_for
 
     def rulings(self, points: Floats) -> Floats:
         """Return unit directions (k, 3) from hub to shroud at points (k, 3), along the rulings of the walls beside them."""

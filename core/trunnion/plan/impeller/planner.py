@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trunnion import tolerance
-from trunnion.findings import BadInput, Finding, Refused, error
+from trunnion.findings import Finding, Refused, error
 from trunnion.geometry.frame import WORLD
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
-from trunnion.plan.feasibility import too_large
+from trunnion.plan.feasibility import refuse_open, too_large, without_axes
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
@@ -27,6 +27,9 @@ from trunnion.progress import Progress
 if TYPE_CHECKING:
     from trunnion.part.part import Part
 
+NEEDS_AXES = "channels between blades are milled by a tool that leans"
+"""Why a machine without rotary axes is refused."""
+
 
 class ImpellerPlanner:
     """Plans the channels of one period of a wheel; what is turned before is told."""
@@ -37,14 +40,15 @@ class ImpellerPlanner:
 
     def can_plan(self, part: Part) -> None:
         """Raise `BadInput` for faces that enclose no material."""
-        if not part.is_closed:
-            raise BadInput("nothing can be planned for faces that enclose no material")
+        refuse_open(part.is_closed)
 
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_impeller_route`, or why the blank fits no machine."""
         route = job.settings_of(RouteSettings)
         job.progress.at(0.0, "looking at the wheel")
-        findings = too_large(job.blank, job.setups, job.shop) or self._without_axes(job)
+        findings = too_large(job.blank, job.setups, job.shop) or without_axes(
+            job.recognition, job.setups, job.shop, NEEDS_AXES
+        )
         if not findings:
             skin = job.context.skin(tolerance.CHORD, job.progress)
             skin = skin.moved(WORLD, job.recognition.frame)
@@ -68,17 +72,6 @@ class ImpellerPlanner:
             route,
             job.settings_of(ImpellerRouteSettings),
         )
-
-    def _without_axes(self, job: RouteJob) -> list[Finding]:
-        if job.shop.machine(job.setups[0].machine).rotary:
-            return []
-        return [
-            _not_planned(
-                job,
-                "channels between blades are milled by a tool that leans, and the machine has no rotary axes",
-                "choose a machine with rotary axes (setup.machine)",
-            )
-        ]
 
     def drive(
         self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress

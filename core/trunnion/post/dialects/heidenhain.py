@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from trunnion.findings import BadCall
 from trunnion.model.motion.program import Program
 from trunnion.model.setup import Setup
 from trunnion.model.tool import AnyTool
 from trunnion.post.header import Header
 from trunnion.post.klartext_words import klartext_words
 from trunnion.post.settings import PostSettings
+from trunnion.post.words import check_one_setup
 from trunnion.post.writer.klartext import KlartextTipWriter, KlartextWriter, klartext_stamp
 from trunnion.shop.kinematics import NO_WORK_POSITIONS, WorkPositions
 
@@ -35,7 +35,7 @@ class HeidenhainDialect:
         work_positions: WorkPositions = NO_WORK_POSITIONS,
     ) -> str:
         """Return the text of one setup's program."""
-        self._check_one(programs)
+        check_one_setup(self.words.title, programs)
         work_position = work_positions.get(programs[0].setup.name)
         rotary = work_position is not None and bool(work_position.machine.rotary)
         writer_class = KlartextTipWriter if rotary else KlartextWriter
@@ -56,10 +56,6 @@ class HeidenhainDialect:
         """Return the program of the one setup."""
         from trunnion.post.readers.klartext.interpreter import read_klartext
 
-        self._check_one(setups)
+        check_one_setup(self.words.title, setups)
         work_position = work_positions.get(setups[0].name)
         return (read_klartext(text, tools, setups[0], work_position, self.words),)
-
-    def _check_one(self, given: Sequence[Program] | Sequence[Setup]) -> None:
-        if len(given) != 1:
-            raise BadCall(f"a {self.words.title} program holds one setup; got {len(given)}")

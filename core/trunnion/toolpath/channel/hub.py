@@ -10,7 +10,6 @@ import math
 
 import numpy as np
 
-from trunnion.findings import Refused
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -18,6 +17,7 @@ from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.contact_passes.channel_choices import axis_turn, finishing_chord, over_shroud
 from trunnion.toolpath.contact_passes.channel_finish import finished, wanted_axes
 from trunnion.toolpath.contact_passes.channel_lines import (
     TOE_CLEARANCE,
@@ -54,30 +54,9 @@ class ChannelHubSettings:
         label="Lean",
         help="How far the tool's flank is leant off the hub at least.",
     )
-    turn: float = setting(
-        10.0,
-        unit="deg/mm",
-        low=0.5,
-        high=60.0,
-        label="Axis turn",
-        help="How far the axis may turn on a mm of the cutter's way.",
-    )
-    chord: float = setting(
-        0.001,
-        unit="mm",
-        low=0.0001,
-        high=0.1,
-        label="Chord error",
-        help="How far a block may leave the hub, on either side.",
-    )
-    safety: float = setting(
-        1.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="How far over the shroud the tool is fed out of a channel before it goes at rapid.",
-    )
+    turn: float = axis_turn()
+    chord: float = finishing_chord("hub")
+    safety: float = over_shroud()
 
 
 @strategy(
@@ -97,10 +76,6 @@ def hub(
 ) -> Planned:
     """Return the path over the hub in the channels of a period and its copies, and what the tool does not come to."""
     surface = drive.surface
-    if surface.query_for is None:
-        raise Refused(
-            f"{surface.feature}: finishing between blades leans the tool; choose a machine with rotary axes"
-        )
     stepover = stepover_on_plane(tool.corner_radius, surface.height)
     lean = math.radians(settings.lean)
     lines: list[Contacts] = []

@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from trunnion.findings import Finding, Refused, warning
+from trunnion.findings import Finding, warning
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import CuttingData, Engagement, Operation
@@ -25,6 +25,7 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits
 from trunnion.toolpath.contact_passes.blank_clearance import body_outside
+from trunnion.toolpath.contact_passes.channel_choices import axis_turn
 from trunnion.toolpath.contact_passes.channel_finish import (
     CLOSE,
     OFF,
@@ -70,14 +71,7 @@ class ChannelRoughSettings:
         label="Safety distance",
         help="How far passes run out beyond the blank before they turn, and rapids stay from it.",
     )
-    turn: float = setting(
-        10.0,
-        unit="deg/mm",
-        low=0.5,
-        high=60.0,
-        label="Axis turn",
-        help="How far the axis may turn on a mm of the cutter's way.",
-    )
+    turn: float = axis_turn()
     chord: float = setting(
         0.03,
         unit="mm",
@@ -113,15 +107,9 @@ def rough(
     progress: Progress = NO_PROGRESS,
 ) -> Planned:
     """Return the path that roughs the channels of a period and its copies, and what stays because the tool does not go there."""
-    surface = drive.surface
-    if surface.query_for is None:
-        raise Refused(
-            f"{surface.feature}: roughing channels leans the tool; choose a machine with rotary axes"
-        )
+    surface, query_for = drive.surface, drive.leaning_query("roughing channels")
     allowance = surface.allowance
-    query = outside_query(
-        grown_query(surface.query_for, tool, allowance), body_outside(tool, drive.inward)
-    )
+    query = outside_query(grown_query(query_for, tool, allowance), body_outside(tool, drive.inward))
     limits = LeanLimits(turn=math.radians(settings.turn), steepest=steepest_of(tool))
     sphere = clearance_sphere(drive.blank, setup)
     parameters = SphereLinkParameters(

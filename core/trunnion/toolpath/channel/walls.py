@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from trunnion.findings import Finding, Refused, info
+from trunnion.findings import Finding, info
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -16,6 +16,7 @@ from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.contact_passes.channel_choices import axis_turn, finishing_chord, over_shroud
 from trunnion.toolpath.contact_passes.channel_finish import finished, off_hub, wanted_axes
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
@@ -38,30 +39,9 @@ class ChannelWallSettings:
         label="Lean",
         help="How far the tool's flank is leant off the wall where there is space.",
     )
-    turn: float = setting(
-        10.0,
-        unit="deg/mm",
-        low=0.5,
-        high=60.0,
-        label="Axis turn",
-        help="How far the axis may turn on a mm of the cutter's way.",
-    )
-    chord: float = setting(
-        0.001,
-        unit="mm",
-        low=0.0001,
-        high=0.1,
-        label="Chord error",
-        help="How far a block may leave the faces, on either side.",
-    )
-    safety: float = setting(
-        1.0,
-        unit="mm",
-        low=0.2,
-        high=50.0,
-        label="Safety distance",
-        help="How far over the shroud the tool is fed out of a channel before it goes at rapid.",
-    )
+    turn: float = axis_turn()
+    chord: float = finishing_chord("faces")
+    safety: float = over_shroud()
 
 
 @strategy(
@@ -81,10 +61,6 @@ def walls(
 ) -> Planned:
     """Return the path over the drive's faces and their copies, and what the tool does not come to."""
     surface = drive.surface
-    if surface.query_for is None:
-        raise Refused(
-            f"{surface.feature}: finishing between blades leans the tool; choose a machine with rotary axes"
-        )
     ball = grooving(tool, 0.0, 0.5 * math.pi)
     lines, findings = _lines(drive, ball, settings.chord, progress.part(0.0, 0.2))
     if drive.sharp:

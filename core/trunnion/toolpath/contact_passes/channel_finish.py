@@ -95,15 +95,13 @@ def finished(
     and, by a millimetre, off the part; where no axis does so they stay off the part alone.
     """
     surface = drive.surface
-    assert surface.query_for is not None
+    query_for = drive.leaning_query("finishing between blades")
     lines = [line for line in lines if len(line) > 1]
     if not lines:
         return Planned(findings=findings)
     queries = (
-        outside_query(
-            surface.query_for(thickened(tool, LEAST_STOCK)), body_outside(tool, drive.inward)
-        ),
-        surface.query_for(tool),
+        outside_query(query_for(thickened(tool, LEAST_STOCK)), body_outside(tool, drive.inward)),
+        query_for(tool),
     )
     done = passes_along(
         lines,
