@@ -279,7 +279,7 @@ def written(shape: Any, suffix: str = "step", unit: str = "mm", name: str = "sam
 
 def read(shape: Any, suffix: str = "step", unit: str = "mm", solid: int | None = None) -> Part:
     """Return the part of a shape that was written to a file and read back, once a session and, for speed, in this process."""
-    from trunnion.part.read.child import ReadRequest
+    from trunnion.part.read.request import ReadRequest
     from trunnion.part.read.text import check_iges, check_step
     from trunnion.part.read.transfer import read_file
 

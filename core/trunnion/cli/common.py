@@ -7,15 +7,18 @@ import json
 import os
 import sys
 from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion.findings import BadCall, BadInput, Finding, Severity, has_errors
+from trunnion.part.read.part_file import PartReading, is_part_file
 from trunnion.progress import Progress
 
 if TYPE_CHECKING:
     from trunnion.model.session import Session
     from trunnion.pipeline import Engine
+    from trunnion.report.picture_process import Ahead
 
 
 def part_command(
@@ -123,22 +126,32 @@ def progress_of(options: argparse.Namespace) -> Progress:
     return Progress(show)
 
 
-def open_session(options: argparse.Namespace, until: str | None) -> tuple[Engine, Session]:
-    """Return the engine and the session of the part, with every step up to `until` done."""
-    from trunnion.pipeline import Engine
-
+def open_session(
+    options: argparse.Namespace, until: str | None, ahead: Ahead | None = None
+) -> tuple[Engine, Session]:
+    """Return the engine and the session of the part, with every step up to `until` done; `ahead` draws the plan's pictures."""
     if options.user_folder is not None and not options.user_folder.is_dir():
         raise BadInput(
             f"{options.user_folder}: no such folder of tools, materials, machines and plans"
         )
-    engine = Engine(options.user_folder)
-    progress = progress_of(options)
-    session = engine.open(options.part, solid=options.solid, progress=progress.part(0.0, 0.1))
-    session = engine.with_choices(session, words_of(options))
+    words, progress = words_of(options), progress_of(options)
+    with ExitStack() as begun:
+        reading = None
+        if is_part_file(options.part):
+            # While a process of its own reads the part, the program is loaded.
+            reading = begun.enter_context(PartReading(options.part, solid=options.solid))
+        from trunnion.pipeline import Engine
+
+        engine = Engine(options.user_folder)
+        engine.settings()
+        session = engine.open(
+            options.part, solid=options.solid, reading=reading, progress=progress.part(0.0, 0.1)
+        )
+    session = engine.with_choices(session, words)
     if options.fixtures:
         session = engine.with_fixtures(session, options.fixtures, progress)
     if until is not None:
-        session = engine.run(session, until, progress.part(0.1, 1.0))
+        session = engine.run(session, until, progress.part(0.1, 1.0), ahead)
     return engine, session
 
 

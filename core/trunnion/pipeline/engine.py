@@ -25,17 +25,20 @@ from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
 from trunnion.plan.operation_change import OperationChange, with_change
 from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import NO_PROGRESS, Progress
-from trunnion.report.picture_process import Drawing, here
+from trunnion.report.picture_process import Ahead, Drawing, here
 from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import load_shop
 from trunnion.verify.settings import ProofSettings
 
 if TYPE_CHECKING:
+    from trunnion.part.read.part_file import PartReading
     from trunnion.pipeline.proof.playback import Playback
     from trunnion.report.deviation import DeviationMap
 
 PROJECT_SUFFIX = ".trunnion"
 FRESH = ("done", "problem")
+_LAID = "toolpath"
+"""The step after which a plan can be drawn."""
 """States of a step whose result belongs to what it reads now."""
 
 
@@ -52,16 +55,25 @@ class Engine:
         self._playback: Playback | None = None
 
     def open(
-        self, path: str | Path, *, solid: int | None = None, progress: Progress = NO_PROGRESS
+        self,
+        path: str | Path,
+        *,
+        solid: int | None = None,
+        reading: PartReading | None = None,
+        progress: Progress = NO_PROGRESS,
     ) -> Session:
-        """Return a new session of a part file (STEP, IGES, gzipped STEP) or the saved session of a project file."""
+        """Return a new session of a part file (STEP, IGES, gzipped STEP) or the saved session of a project file.
+
+        `reading` is the part file's, where it was begun before.
+        """
         path, progress = Path(path), progress.afresh()
         if path.suffix.lower() == PROJECT_SUFFIX:
             return self._open_project(path, progress)
         from trunnion.part.read.part_file import read_part
 
         with compiling(progress):
-            part = read_part(path, solid=solid, progress=progress.part(0.0, 0.7))
+            share = progress.part(0.0, 0.7)
+            part = reading.part(share) if reading else read_part(path, solid=solid, progress=share)
             with part.watched(progress.part(0.7, 1.0)):
                 part.graph()
         self._contexts = Contexts(part, self._shop)
@@ -236,9 +248,16 @@ class Engine:
         return "problem" if has_errors(record.findings) else "done"
 
     def run(
-        self, session: Session, until: str = STEPS[-1], progress: Progress = NO_PROGRESS
+        self,
+        session: Session,
+        until: str = STEPS[-1],
+        progress: Progress = NO_PROGRESS,
+        ahead: Ahead | None = None,
     ) -> Session:
-        """Return the session with every stale step up to `until` computed again; the one given stays as it was."""
+        """Return the session with every stale step up to `until` computed again; the one given stays as it was.
+
+        `ahead` is asked for the pictures of the plan as soon as its toolpaths are laid.
+        """
         last, progress = STEPS.index(step_named(until).name), progress.afresh()
         for n, step in enumerate(progress.each(STEP_TABLE[: last + 1])):
             if progress.aside(partial(self._state, session, step)) in FRESH:
@@ -246,8 +265,15 @@ class Engine:
             share = progress.part(n / (last + 1), (n + 1) / (last + 1))
             share.at(0.0, step.title)
             session = run_step(session, step, self.context_of(session, share), share, STEPS)
+            if ahead is not None and step.name == _LAID:
+                ahead(session, self._picture_mesh(session, share))
         progress.at(1.0, "done")
         return session
+
+    def _picture_mesh(self, session: Session, progress: Progress) -> Mesh:
+        part = self.context_of(session).part
+        with part.watched(progress):
+            return part.mesh(tolerance.PICTURE)
 
     def playback(
         self, session: Session, cell: float = 0.0, progress: Progress = NO_PROGRESS
@@ -318,7 +344,7 @@ class Engine:
         with compiling(progress), context.part.watched(progress):
             files = write_documents(
                 session,
-                context.part.mesh(tolerance.PICTURE),
+                self._picture_mesh(session, progress),
                 Path(folder),
                 name=name,
                 date=date,

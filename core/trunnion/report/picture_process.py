@@ -1,4 +1,5 @@
-"""Pictures drawn by a process of their own: it loads what it draws with while the part is planned, and draws while files are written.
+"""Pictures drawn by a process of their own: it loads what it draws with while the part is planned, draws the plan while it is proven, and
+the proof while files are written.
 
 Started afresh (never forked) as `python -m trunnion.report.picture_process`, it lets others begin before it loads anything. Requests and
 answers are pickles on its standard input and output, one after another; a crash of a graphics driver ends this process only, and the
@@ -33,6 +34,8 @@ Drawn = Callable[[Progress], tuple["Picture", ...]]
 """Waits for pictures and returns them."""
 Drawing = Callable[[Session, Mesh, Path, str], Drawn]
 """Begins the pictures `NAME.*.png` of a session, its mesh given, in a folder."""
+Ahead = Callable[[Session, Mesh], None]
+"""Asks for the pictures of a session's plan, its mesh given, while the plan is proven."""
 HEAD_START_S = 4.0
 """How long the process waits before it loads what it draws with: about as long as both cores read a part and load the CAD kernel."""
 
@@ -60,6 +63,7 @@ class PictureProcess:
             stderr=subprocess.DEVNULL,
         )
         self._pool = ThreadPoolExecutor(1, "trunnion-pictures")
+        self._planned: tuple[object, ...] = ()
         return self
 
     def __exit__(
@@ -78,9 +82,16 @@ class PictureProcess:
         with suppress(BrokenPipeError):
             self._child.communicate()
 
+    def ahead(self, session: Session, mesh: Mesh) -> None:
+        """Ask for the pictures of a session's plan, to be kept for the session that is proven with this plan."""
+        self._planned = _plan_of(session)
+        self._pool.submit(self._response_to, (session, mesh))
+
     def begin(self, session: Session, mesh: Mesh, folder: Path, name: str) -> Drawn:
         """Ask for the pictures `NAME.*.png` of a session in a folder; what is returned waits for them."""
-        future = self._pool.submit(self._drawn_by_child, session, mesh, folder, name)
+        same = [mine is its for mine, its in zip(self._planned, _plan_of(session), strict=False)]
+        request = (session, mesh, folder, name, bool(same) and all(same))
+        future = self._pool.submit(self._response_to, request)
 
         def drawn(progress: Progress = NO_PROGRESS) -> tuple[Picture, ...]:
             progress.at(0.0, "drawing pictures")
@@ -90,7 +101,7 @@ class PictureProcess:
 
         return drawn
 
-    def _drawn_by_child(self, *request: object) -> tuple[Picture, ...]:
+    def _response_to(self, request: tuple[object, ...]) -> tuple[Picture, ...]:
         """Return what the process answers, nothing where it ended before."""
         assert self._child.stdin is not None and self._child.stdout is not None
         try:
@@ -100,6 +111,11 @@ class PictureProcess:
         except (BrokenPipeError, EOFError):
             return ()
         return made
+
+
+def _plan_of(session: Session) -> tuple[object, ...]:
+    """Return what the pictures of a plan are drawn from, beside the part's mesh."""
+    return session.part, session.recognition, session.setups, session.process, session.paths
 
 
 def _wait_for_request() -> None:
@@ -120,20 +136,25 @@ def main() -> None:
     # Answers alone go to the pipe: what libraries print would spoil them.
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    from trunnion.report.pictures import load_graphics, write_pictures
+    from trunnion.report.pictures import draw_plan, warm_graphics, write_pictures
 
-    load_graphics()
-    palette = load_palette()
+    warm_graphics()
+    palette, plan = load_palette(), None
     while True:
         try:
-            session, mesh, folder, name = pickle.load(sys.stdin.buffer)
+            session, mesh, *file = pickle.load(sys.stdin.buffer)
         except EOFError:
             return
-        try:
-            made = write_pictures(session, mesh, folder, name, palette)
-        except (TrunnionError, OSError):
-            # The caller draws them again, and says why it can't.
-            made = ()
+        made: tuple[Picture, ...] = ()
+        # The caller draws again what fails here, and says why it can't.
+        with suppress(TrunnionError, OSError):
+            if file:
+                folder, name, same = file
+                kept = plan if same else None
+                made = write_pictures(session, mesh, folder, name, palette, plan=kept)
+            else:
+                plan = None
+                plan = draw_plan(session, mesh, palette)
         pickle.dump(made, replies, protocol=pickle.HIGHEST_PROTOCOL)
         replies.flush()
 

@@ -6,9 +6,10 @@ pyvista is imported late: a report is written once, and a command that writes no
 from __future__ import annotations
 
 import importlib
+import io
 import os
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -56,9 +57,24 @@ class Picture:
     caption: str
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrawnPicture:
+    """A picture that is not written yet: what it shows (the middle of its file's name), the words under it, the bytes of its PNG file."""
+
+    subject: str
+    caption: str
+    data: bytes
+
+
 def load_graphics() -> None:
     """Load what pictures are drawn with, ahead of the first one."""
     importlib.import_module("pyvista.plotting.plotter")
+
+
+def warm_graphics() -> None:
+    """Load what pictures are drawn with and open a first, empty one, which takes what the driver needs to begin."""
+    load_graphics()
+    _plotter().close()
 
 
 def write_pictures(
@@ -68,31 +84,51 @@ def write_pictures(
     name: str,
     palette: Palette,
     progress: Progress = NO_PROGRESS,
+    plan: Sequence[DrawnPicture] | None = None,
 ) -> tuple[Picture, ...]:
-    """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work."""
+    """Write the pictures of a session as PNG files `NAME.*.png` into a folder and return them in the order of the work.
+
+    Those of its plan are drawn here unless they are given.
+    """
+    if plan is None:
+        plan = draw_plan(session, mesh, palette, progress.part(0.0, 0.6))
+    made = []
+    for drawn in (*plan, *draw_proof(session, mesh, palette, progress.part(0.6, 1.0))):
+        picture = Picture(file=f"{name}.{drawn.subject}.png", caption=drawn.caption)
+        (folder / picture.file).write_bytes(drawn.data)
+        made.append(picture)
+    return tuple(made)
+
+
+def draw_plan(
+    session: Session, mesh: Mesh, palette: Palette, progress: Progress = NO_PROGRESS
+) -> tuple[DrawnPicture, ...]:
+    """Return the pictures of what stands before the proof: features and toolpaths, as far as there are some."""
     made = []
     progress.aside(lambda _: load_graphics(), "drawing pictures")
     if session.recognition is not None:
         progress.at(0.1, "drawing the features")
-        _shoot(_features(session, mesh, palette), folder / f"{name}.features.png", progress)
-        words = features_caption(session.recognition, palette)
-        made.append(Picture(file=f"{name}.features.png", caption=words))
+        data = _shoot(_features(session, mesh, palette), progress)
+        caption = features_caption(session.recognition, palette)
+        made.append(DrawnPicture(subject="features", caption=caption, data=data))
     if any(len(p.path) for p in session.paths):
-        progress.at(0.3, "drawing the toolpaths")
-        _shoot(_toolpaths(session, mesh, palette), folder / f"{name}.toolpaths.png", progress)
-        made.append(Picture(file=f"{name}.toolpaths.png", caption="Toolpaths by kind of motion"))
-    if session.verdict is not None and len(session.verdict.deviation.face):
-        progress.at(0.6, "drawing the deviation")
-        _shoot(
-            _deviation(session, mesh, palette, progress), folder / f"{name}.deviation.png", progress
-        )
-        made.append(
-            Picture(
-                file=f"{name}.deviation.png",
-                caption="Deviation of the finished part: + is material left, - is gouge",
-            )
-        )
+        progress.at(0.5, "drawing the toolpaths")
+        data = _shoot(_toolpaths(session, mesh, palette), progress)
+        caption = "Toolpaths by kind of motion"
+        made.append(DrawnPicture(subject="toolpaths", caption=caption, data=data))
     return tuple(made)
+
+
+def draw_proof(
+    session: Session, mesh: Mesh, palette: Palette, progress: Progress = NO_PROGRESS
+) -> tuple[DrawnPicture, ...]:
+    """Return the pictures of a proof: the deviation of the finished part; none before it."""
+    if session.verdict is None or not len(session.verdict.deviation.face):
+        return ()
+    progress.at(0.0, "drawing the deviation")
+    data = _shoot(_deviation(session, mesh, palette, progress), progress)
+    caption = "Deviation of the finished part: + is material left, - is gouge"
+    return (DrawnPicture(subject="deviation", caption=caption, data=data),)
 
 
 def _plotter() -> Plotter:
@@ -112,13 +148,20 @@ def _plotter() -> Plotter:
     return made
 
 
-def _shoot(plotter: Plotter, file: Path, progress: Progress) -> None:
+def _shoot(plotter: Plotter, progress: Progress) -> bytes:
+    """Return the bytes of a picture's PNG file."""
     from PIL import Image
 
     progress.check()
     drawn = np.asarray(plotter.screenshot(return_img=True))
     plotter.close()
-    progress.aside(lambda _: Image.fromarray(drawn).save(file))
+
+    def encoded(_: Progress) -> bytes:
+        stream = io.BytesIO()
+        Image.fromarray(drawn).save(stream, "PNG")
+        return stream.getvalue()
+
+    return progress.aside(encoded)
 
 
 def _surface(points: Floats, triangles: Ints) -> Any:

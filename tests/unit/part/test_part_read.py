@@ -14,7 +14,7 @@ from parts import PARTS, needs_parts
 from trunnion.findings import BadInput, Cancelled, OutOfMemory
 from trunnion.part.part import Part
 from trunnion.part.read.limits import ReadLimits
-from trunnion.part.read.part_file import read_part, read_part_bytes
+from trunnion.part.read.part_file import PartReading, read_part, read_part_bytes
 from trunnion.progress import Progress
 
 
@@ -142,6 +142,18 @@ def test_reading_that_needs_too_much_memory_says_so() -> None:
 
 
 @pytest.mark.cold
+def test_a_reading_begun_before_gives_the_same_part_and_leaves_nothing_behind() -> None:
+    file = samples.block_with_pocket()
+    with PartReading(file) as reading:
+        folder = Path(reading._child._folder.name)
+        assert folder.is_dir()
+        assert reading.part().to_bytes() == read_part(file).to_bytes()
+    with PartReading(file) as given_up:
+        left = Path(given_up._child._folder.name)
+    assert not folder.exists() and not left.exists()
+    assert given_up._child._child.poll() is not None
+
+
 def test_reading_can_be_cancelled() -> None:
     asked = []
     with pytest.raises(Cancelled):

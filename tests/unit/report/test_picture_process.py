@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import cadquery as cq
@@ -10,6 +11,7 @@ from vtkmodules.vtkRenderingCore import vtkMapper
 
 from samples import written
 from trunnion.findings import Cancelled
+from trunnion.geometry.mesh import Mesh
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
 from trunnion.progress import NO_PROGRESS, Progress
@@ -41,6 +43,24 @@ def test_a_process_draws_the_same_bytes_picture_after_picture(recognised, tmp_pa
     assert made == [expected, expected] and [p.file for p in expected] == ["block.features.png"]
     first, *others = map(bytes_of, folders)
     assert first and all(other == first for other in others)
+
+
+def test_a_plan_drawn_ahead_is_kept_for_the_same_plan_only(recognised, tmp_path) -> None:
+    engine, session = recognised
+    mesh = engine.mesh(session)
+    folders = [tmp_path / name for name in ("here", "same", "changed")]
+    for folder in folders:
+        folder.mkdir()
+    here(session, mesh, folders[0], "block")(NO_PROGRESS)
+    other = replace(session, recognition=replace(session.recognition, features=()))
+    with PictureProcess() as process:
+        process.ahead(session, mesh)
+        # A session that goes on with the same plan is given what was drawn: another mesh would draw other bytes.
+        half = Mesh(points=mesh.points, triangles=mesh.triangles[::2], face=mesh.face[::2])
+        process.begin(replace(session, choices={}), half, folders[1], "block")(NO_PROGRESS)
+        process.begin(other, mesh, folders[2], "block")(NO_PROGRESS)
+    expected, same, changed = map(bytes_of, folders)
+    assert same == expected != changed
 
 
 def test_pictures_are_drawn_here_where_the_process_has_ended(recognised, tmp_path) -> None:

@@ -66,7 +66,7 @@ def _one(
 ) -> tuple[int, tuple[str, str, str]]:
     options.part = part
     try:
-        engine, session = open_session(options, "repair")
+        engine, session = open_session(options, "repair", pictures.ahead)
         engine.write(
             session,
             options.output / Path(part).stem,

@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
     if options.name:
         checked_name(options.name)
     with PictureProcess() as pictures:
-        engine, session = open_session(options, "repair")
+        engine, session = open_session(options, "repair", pictures.ahead)
         files = engine.write(
             session,
             options.output,

@@ -28,46 +28,61 @@ _REFUSED, _NO_MEMORY = 3, 4
 _MEGA = 1 << 20
 
 
-def run(request: ReadRequest, data: bytes, limits: ReadLimits, progress: Progress) -> bytes:
-    """Return the bytes of the part (`Part.to_bytes`) that a fresh process read from a file's bytes, within limits."""
-    with tempfile.TemporaryDirectory(prefix="trunnion-read-") as folder:
-        directory = Path(folder)
+class ReadingProcess:
+    """A fresh process that reads a part from a file's bytes, within limits; used in a `with` block, at whose end it is over."""
+
+    def __init__(self, request: ReadRequest, data: bytes, limits: ReadLimits) -> None:
+        self._request, self._limits = request, limits
+        self._folder = tempfile.TemporaryDirectory(prefix="trunnion-read-")
+        directory = Path(self._folder.name)
         (directory / "part").write_bytes(data)
         (directory / "request.json").write_text(
             json.dumps({"request": asdict(request), "memory": limits.memory}), encoding="utf-8"
         )
+        self._began = time.monotonic()
         with (directory / "words").open("wb") as words:
             # -P: nothing is imported from the folder that the program happens to be started in.
-            child = subprocess.Popen(
-                [sys.executable, "-P", "-m", "trunnion.part.read.child", folder],
+            self._child = subprocess.Popen(
+                [sys.executable, "-P", "-m", "trunnion.part.read.child", self._folder.name],
                 stdin=subprocess.DEVNULL,
                 stdout=words,
                 stderr=words,
                 env=os.environ | {"PYTHONIOENCODING": "utf-8"},
             )
-            try:
-                _wait(child, request, limits, progress)
-            finally:
-                child.kill()
-                child.wait()
-        return _response(child.returncode, directory, request, limits)
 
+    def __enter__(self) -> ReadingProcess:
+        return self
 
-def _wait(
-    child: subprocess.Popen[bytes], request: ReadRequest, limits: ReadLimits, progress: Progress
-) -> None:
-    start = looked = time.monotonic()
-    progress.aside(lambda _: _load(), f"reading {request.file}")
-    while child.poll() is None:
-        now = time.monotonic()
-        if now - start > limits.seconds:
-            raise BadInput(
-                f"{request.file}: reading took longer than {limits.seconds:g} s and was stopped; export the part again"
-            )
-        if now - looked > _CHECK:
-            progress.at(min(0.9, (now - start) / limits.seconds), f"reading {request.file}")
-            looked = now
-        time.sleep(_LOOK)
+    def __exit__(self, *_: object) -> None:
+        self.end()
+
+    def end(self) -> None:
+        """End the process, at whatever it is, and remove its files."""
+        self._child.kill()
+        self._child.wait()
+        self._folder.cleanup()
+
+    def response(self, progress: Progress) -> bytes:
+        """Return the bytes of the part (`Part.to_bytes`) once it is read."""
+        self._wait(progress)
+        return _response(
+            self._child.returncode, Path(self._folder.name), self._request, self._limits
+        )
+
+    def _wait(self, progress: Progress) -> None:
+        file, limit = self._request.file, self._limits.seconds
+        looked = self._began
+        progress.aside(lambda _: _load(), f"reading {file}")
+        while self._child.poll() is None:
+            now = time.monotonic()
+            if now - self._began > limit:
+                raise BadInput(
+                    f"{file}: reading took longer than {limit:g} s and was stopped; export the part again"
+                )
+            if now - looked > _CHECK:
+                progress.at(min(0.9, (now - self._began) / limit), f"reading {file}")
+                looked = now
+            time.sleep(_LOOK)
 
 
 def _load() -> None:

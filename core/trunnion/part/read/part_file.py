@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.findings import BadInput
+from trunnion.part.read.child import ReadingProcess
 from trunnion.part.read.limits import ReadLimits
+from trunnion.part.read.request import ReadRequest
 from trunnion.part.read.text import check_iges, check_step, kind_of
 from trunnion.progress import NO_PROGRESS, Progress
 
@@ -34,9 +36,8 @@ def read_part(
     `solid` chooses one of several solids, from 1; without it the largest is taken and a finding names the others. Raises `BadInput`
     with one line for a file that can't be used, `OutOfMemory` when reading needs more than `limits` allow, `Cancelled` on request.
     """
-    limits = limits or ReadLimits()
-    file = Path(path)
-    return _read(_bytes_of(file, limits), file.name, str(file), solid, limits, progress)
+    with PartReading(path, solid=solid, limits=limits) as reading:
+        return reading.part(progress)
 
 
 def read_part_bytes(
@@ -50,16 +51,43 @@ def read_part_bytes(
 ) -> Part:
     """Return the part of a file's bytes, as `read_part` does; `name` and `suffix` are the file's."""
     file = name if name.endswith(suffix) else name + suffix
-    return _read(data, file, file, solid, limits or ReadLimits(), progress)
+    with _begun(data, file, file, solid, limits or ReadLimits()) as reading:
+        return _finished(reading, progress)
 
 
-def _read(
-    data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits, progress: Progress
-) -> Part:
-    from trunnion.part.read.child import run
-    from trunnion.part.read.request import ReadRequest
+def is_part_file(path: str | os.PathLike[str]) -> bool:
+    """Return whether a file's name is a part file's, not a project's."""
+    return Path(path).suffix.lower() in (*SUFFIXES, ".gz")
 
-    progress.at(0.0, "reading")
+
+class PartReading:
+    """The reading of a part file by a process of its own, from its beginning on; used in a `with` block, at whose end it is over."""
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        solid: int | None = None,
+        limits: ReadLimits | None = None,
+    ) -> None:
+        """Begin to read; raises `BadInput` for a file that is no part file."""
+        limits, file = limits or ReadLimits(), Path(path)
+        self._child = _begun(_bytes_of(file, limits), file.name, str(file), solid, limits)
+
+    def part(self, progress: Progress = NO_PROGRESS) -> Part:
+        """Return the part once it is read; raises what `read_part` does."""
+        return _finished(self._child, progress)
+
+    def __enter__(self) -> PartReading:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._child.end()
+
+
+def _begun(
+    data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits
+) -> ReadingProcess:
     plain = _unpacked(data, file, limits)
     kind = kind_of(plain, file)
     listed = check_step(plain, file) if kind == "step" else check_iges(plain, file)
@@ -73,7 +101,12 @@ def _read(
         solid=solid,
         size=len(plain),
     )
-    read = run(request, plain, limits, progress)
+    return ReadingProcess(request, plain, limits)
+
+
+def _finished(reading: ReadingProcess, progress: Progress) -> Part:
+    progress.at(0.0, "reading")
+    read = reading.response(progress)
     # The CAD kernel takes a second to load: the process that reads the file has been at work meanwhile.
     from trunnion.part.part import Part
 
