@@ -71,13 +71,19 @@ def _same(face: Shape) -> Shape:
 
 
 def _sewn(as_read: Shape) -> tuple[Shape, Image, list[Finding]]:
-    """Return the faces sewn with the smallest tolerance that leaves no free edge, or the largest allowed."""
-    for tolerated in _SEW_STEPS:
-        tool = BRepBuilderAPI_Sewing(tolerated)
-        tool.Add(as_read)
-        tool.Perform()
-        if tool.NbFreeEdges() == 0:
-            break
+    """Return the faces sewn with the smallest tolerance that leaves no free edge, or the largest allowed.
+
+    Sewing takes the longer the more it is allowed to move: those between are tried only where the largest closes the part.
+    """
+    smallest, *between, largest = _SEW_STEPS
+    tolerated, tool = smallest, _sewing(as_read, smallest)
+    if tool.NbFreeEdges():
+        tolerated, tool = largest, _sewing(as_read, largest)
+        for step in () if tool.NbFreeEdges() else between:
+            closer = _sewing(as_read, step)
+            if closer.NbFreeEdges() == 0:
+                tolerated, tool = step, closer
+                break
 
     def image(face: Shape) -> Shape:
         return tool.ModifiedSubShape(face) if tool.IsModifiedSubShape(face) else face
@@ -93,6 +99,13 @@ def _sewn(as_read: Shape) -> tuple[Shape, Image, list[Finding]]:
             )
         )
     return sewn, image, findings
+
+
+def _sewing(as_read: Shape, tolerated: float) -> BRepBuilderAPI_Sewing:
+    tool = BRepBuilderAPI_Sewing(tolerated)
+    tool.Add(as_read)
+    tool.Perform()
+    return tool
 
 
 def _solid(shell: Shape) -> Shape:
