@@ -33,12 +33,10 @@ def test_b5_is_programmed_and_proven_from_both_sides():
     assert webs and all("2 mm" in f.text for f in webs)
 
 
-@pytest.mark.parametrize("name", ["B2", "B3"])
-def test_what_can_not_be_cut_is_rejected_without_a_gouge(name):
-    verdict = programmed(PARTS / "panel" / f"{name}.step").verdict
-    assert verdict.outcome is Outcome.FAILED
-    assert {f.code for f in verdict.findings if f.severity == "error"} == {"verify.coverage"}
-    assert (verdict.gouge, verdict.collisions, verdict.rapids_in_stock) == (0.0, 0, 0)
+def test_b3_is_programmed_with_its_leaning_walls_and_curved_floors():
+    verdict = programmed(PARTS / "panel" / "B3.step").verdict
+    assert verdict.releases and verdict.reachable >= 0.99
+    assert verdict.gouge <= 0.02 and (verdict.collisions, verdict.rapids_in_stock) == (0, 0)
 
 
 def test_b1_is_proven_from_iges_too():

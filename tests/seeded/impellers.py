@@ -1,7 +1,8 @@
 """Random impellers with truth by construction: counts, rows of splitters, wrap, thickness, bolt circles, and what files do to them.
 
 Blades are ruled from below the hub to above the shroud, cut off by the shroud's envelope and at the outlet radius, and stand on a turned
-hub. What is random of a file: turned to a skew axis, mirrored, in inches, hub cut in sectors, walls in two pieces, root fillets or none.
+hub in sharp roots: rounding these crashes the CAD kernel. What is random of a file: turned to a skew axis, mirrored, in inches, hub cut in
+sectors, walls in two pieces.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ Meridian = Callable[[float], tuple[float, float]]
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeededImpeller:
     """A random wheel: its solid (OCP, mm), the unit of its file, and its truth: counts by kind, how many faces each wall has, the sense in
-    which it turns about the direction to its inlet, diameters of outlet and bore, root fillets (0 where they are sharp)."""
+    which it turns about the direction to its inlet, diameters of outlet and bore."""
 
     name: str
     shape: Any
@@ -35,10 +36,9 @@ class SeededImpeller:
     turns: float
     outlet_diameter: float
     bore_diameter: float
-    root_fillet: float
 
 
-def impeller(seed: int, fillet: bool = False) -> SeededImpeller:
+def impeller(seed: int) -> SeededImpeller:
     """Return the random impeller of a seed."""
     draw = Random(f"impeller {seed}")
     radius = draw.uniform(30.0, 90.0)
@@ -65,9 +65,6 @@ def impeller(seed: int, fillet: bool = False) -> SeededImpeller:
         turn = 360.0 / count
         tools += [one.rotate(*AXIS, turn * (k + share)) for k in range(count)]
     wheel = body.fuse(*tools)
-    root = radius * 0.015 if fillet else 0.0
-    if root:
-        wheel = _footed(wheel, hub, root)
     bore = inner * draw.uniform(0.35, 0.6)
     wheel = wheel.cut(cq.Solid.makeCylinder(bore, 4.0 * radius, cq.Vector(0, 0, -2.0 * radius)))
     holes = draw.choice((0, count + draw.randint(1, 4)))
@@ -99,7 +96,6 @@ def impeller(seed: int, fillet: bool = False) -> SeededImpeller:
         turns=-sense * (-1.0 if mirrored else 1.0),
         outlet_diameter=2.0 * radius,
         bore_diameter=2.0 * bore,
-        root_fillet=root,
     )
 
 
@@ -203,23 +199,6 @@ def _blade(
         faces.append(cq.Face.makeRuledSurface(*lines))
     shell = cq.Shell.makeShell(faces)
     return cq.Solid.makeSolid(shell).fix()
-
-
-def _footed(wheel: cq.Shape, hub: Meridian, root: float) -> cq.Shape:
-    """Return a wheel with its roots rounded."""
-    near = [hub(k / 400.0) for k in range(401)]
-
-    def off(p: cq.Vector) -> float:
-        r = (p.x * p.x + p.y * p.y) ** 0.5
-        return min(((r - a) ** 2 + (p.z - b) ** 2) ** 0.5 for a, b in near)
-
-    roots = [
-        e
-        for e in wheel.Edges()
-        if e.geomType() == "BSPLINE"
-        and all(off(p) < 0.1 for p in e.positions((0.0, 0.3, 0.6, 1.0)))
-    ]
-    return wheel.fillet(root, roots)
 
 
 def _bolts(count: int, radius: float, bolt: float, back: float) -> list[cq.Shape]:
