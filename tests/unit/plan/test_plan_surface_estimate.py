@@ -113,3 +113,24 @@ def test_a_face_whose_steep_and_shallow_places_are_finished_apart_counts_once():
 
 def test_without_finished_areas_there_is_no_estimate():
     assert estimate_of(plan(finishing("semi-a", 1, mill(8.0), kind="semi")), AREAS) is None
+
+
+def test_totals_are_those_of_local_features_of_the_remaining_area_and_of_each_group():
+    found = estimate_of(
+        plan(
+            replace(finishing("finish-a", 1, mill(8.0)), faces=(1, 2)),
+            finishing("finish-b", 3, mill(6.0), feature="group-03"),
+        ),
+        np.array([300.0, 100.0, 50.0]),
+        taking(finish_a=40.0, finish_b=10.0),
+        {"group-01": (1,), "group-02": (2,), "group-03": (3,)},
+        local=("group-03",),
+    )
+    # 400 mm2 in 40 s go by area: three quarters to face 1; alone they take 80 s at 5 mm2/s.
+    assert [(t.feature, t.area, t.seconds, t.seconds_alone) for t in found.totals] == [
+        ("remaining area", 400.0, pytest.approx(40.0), pytest.approx(80.0)),
+        ("local features", 50.0, pytest.approx(10.0), pytest.approx(10.0)),
+        ("group-01", 300.0, pytest.approx(30.0), pytest.approx(60.0)),
+        ("group-02", 100.0, pytest.approx(10.0), pytest.approx(20.0)),
+        ("group-03", 50.0, pytest.approx(10.0), pytest.approx(10.0)),
+    ]

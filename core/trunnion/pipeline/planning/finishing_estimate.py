@@ -16,7 +16,14 @@ def estimate(session: Session, context: Context) -> Estimate | None:
     """
     if session.process is None:
         return None
-    return estimate_of(session.process, context.part.graph().area, _paths(session, context))
+    groups = [f for f in session.recognition or () if "local" in f.attributes]
+    return estimate_of(
+        session.process,
+        context.part.graph().area,
+        _paths(session, context),
+        {g.id: g.tags for g in groups},
+        [g.id for g in groups if g.attributes["local"]],
+    )
 
 
 def _paths(session: Session, context: Context) -> dict[str, PathFigures]:

@@ -9,7 +9,7 @@ the machine's acceleration are not in it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,9 @@ from trunnion.units import SECONDS_PER_MINUTE
 
 FINISH, REST_FINISH = "finish", "rest_finish"
 """Kinds of the operations that finish whole areas of curved faces, and what their cutters left of these."""
+
+REMAINING_AREA, LOCAL_FEATURES = "remaining area", "local features"
+"""What the totals of the two classes of groups are called."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,7 +52,7 @@ class AreaTime:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeatureTime:
-    """All that finishes a feature: mm2, and s with cutters of their own and by the smallest cutter alone."""
+    """All that finishes a feature, a group or a class of groups: mm2, and s with cutters of their own and by the smallest cutter alone."""
 
     feature: str
     area: float
@@ -72,12 +75,18 @@ class Estimate:
 
 
 def estimate_of(
-    process: ProcessTree, area: Floats, paths: Mapping[str, PathFigures] | None = None
+    process: ProcessTree,
+    area: Floats,
+    paths: Mapping[str, PathFigures] | None = None,
+    groups: Mapping[str, Sequence[int]] | None = None,
+    local: Collection[str] = (),
 ) -> Estimate | None:
     """Return the estimate for a plan, by the area (n,) mm2 of face row = tag - 1; None where no area of curved faces is finished.
 
     `paths` are the figures of the operations' own toolpaths, where they are there. A face that several operations finish, one its steep
     positions and one the others, counts so that none counts twice: by how far their passes go, in equal parts where that is not known.
+    With the tags of all groups of patches, and which of them are local, totals are those of either class and of every group (the paper's
+    figure 17); an operation's time goes to its faces by their area. Without them totals are those of the operations' features.
     """
     done = [o for o in process.operations if not o.suppressed and o.faces]
     finishing = [o for o in done if o.kind == FINISH]
@@ -97,7 +106,12 @@ def estimate_of(
         for o in done
         if o.kind == REST_FINISH and o.id in known
     ]
-    return _summed(tuple(times), smallest.name)
+    totals = (
+        _group_totals(times, {o.id: o.faces for o in done}, area, groups, local)
+        if groups
+        else _feature_totals(times)
+    )
+    return _summed(tuple(times), totals, smallest.name)
 
 
 def _shared_areas(
@@ -175,12 +189,11 @@ def _rest_time(operation: Operation, path: PathFigures, *, alone: bool) -> AreaT
     )
 
 
-def _summed(times: tuple[AreaTime, ...], alone: str) -> Estimate:
+def _summed(times: tuple[AreaTime, ...], totals: tuple[FeatureTime, ...], alone: str) -> Estimate:
     own, by_one = sum(t.seconds for t in times), sum(t.seconds_alone for t in times)
-    features = dict.fromkeys(t.feature for t in times)
     return Estimate(
         areas=times,
-        totals=tuple(_total(f, [t for t in times if t.feature == f]) for f in features),
+        totals=totals,
         seconds=own,
         alone=alone,
         seconds_alone=by_one,
@@ -189,10 +202,43 @@ def _summed(times: tuple[AreaTime, ...], alone: str) -> Estimate:
     )
 
 
-def _total(feature: str, times: Sequence[AreaTime]) -> FeatureTime:
+def _feature_totals(times: Sequence[AreaTime]) -> tuple[FeatureTime, ...]:
+    features = dict.fromkeys(t.feature for t in times)
+    return tuple(_total(f, [(t, 1.0) for t in times if t.feature == f]) for f in features)
+
+
+def _group_totals(
+    times: Sequence[AreaTime],
+    faces: Mapping[str, Sequence[int]],
+    area: Floats,
+    groups: Mapping[str, Sequence[int]],
+    local: Collection[str],
+) -> tuple[FeatureTime, ...]:
+    """Return the totals of the remaining area, of local features and of every group, without those that nothing finishes."""
+
+    def total(name: str, ids: Collection[str]) -> FeatureTime:
+        tags = {tag for id in ids for tag in groups[id]}
+        return _total(name, [(t, _share(faces[t.operation], tags, area)) for t in times])
+
+    found = [
+        total(REMAINING_AREA, [id for id in groups if id not in local]),
+        total(LOCAL_FEATURES, [id for id in groups if id in local]),
+        *(total(id, [id]) for id in groups),
+    ]
+    return tuple(t for t in found if t.seconds > 0.0)
+
+
+def _share(faces: Sequence[int], tags: Collection[int], area: Floats) -> float:
+    """Return the share of the area of some faces that lies on those with the given tags."""
+    rows = np.array(faces) - 1
+    inside = np.array([tag in tags for tag in faces])
+    return float(area[rows[inside]].sum() / area[rows].sum())
+
+
+def _total(feature: str, shares: Sequence[tuple[AreaTime, float]]) -> FeatureTime:
     return FeatureTime(
         feature=feature,
-        area=sum(t.area for t in times),
-        seconds=sum(t.seconds for t in times),
-        seconds_alone=sum(t.seconds_alone for t in times),
+        area=sum(t.area * share for t, share in shares),
+        seconds=sum(t.seconds * share for t, share in shares),
+        seconds_alone=sum(t.seconds_alone * share for t, share in shares),
     )
