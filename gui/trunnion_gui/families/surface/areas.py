@@ -40,7 +40,7 @@ class AreasBlock(QWidget):
         self._finished = [a.operation for a in found.rows]
         rows = [
             (
-                a.operation or tr("{feature} in all").format(feature=a.feature),
+                a.operation or tr("{feature} in all").format(feature=tr(a.feature)),
                 amount(a.area, 1) if a.area else tr("rest"),
                 amount(a.rate, 2) if a.rate else "",
                 duration(a.seconds),
