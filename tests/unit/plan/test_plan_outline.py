@@ -112,3 +112,39 @@ def test_the_guide_is_exact_between_sections_too(leaning, end):
     inner = guide.curve.sampled(0.01)
     inner = inner[(inner[:, 1] > 3.0) & (inner[:, 1] < 32.0)]
     assert inner[:, 0] == pytest.approx(40.0, abs=1e-6)
+
+
+def test_equal_walls_whose_heights_differ_by_noise_share_their_sections(monkeypatch):
+    posts = cq.Workplane("XY").box(30.0, 10.0, 4.0, centered=False)
+    for x, foot in ((5.0, 4.0), (20.0, 4.0 + 1e-8)):
+        posts = posts.union(
+            cq.Workplane("XY", origin=(0, 0, foot - 1.0))
+            .rect(4.0, 4.0)
+            .extrude(9.0)
+            .translate((x, 5.0, 0.0))
+        )
+    space = space_of(posts, (31.0, 11.0, 13.0))
+    graph, skin = space.part.graph(), space.skin
+    left, right = (
+        tuple(
+            t
+            for t in space.part.tags
+            if abs(graph.centre[t - 1][0] - x) < 2.5 and 4.5 < graph.centre[t - 1][2] < 11.5
+        )
+        for x in (5.0, 20.0)
+    )
+    assert len(left) == len(right) == 4
+    heights = [skin.points[skin.triangles[skin.of(tags)], 2] for tags in (left, right)]
+    assert heights[0].max() != heights[1].max()
+    first = drive_of(space, left)
+    cut: list[float] = []
+    section = type(space.part).section
+    monkeypatch.setattr(
+        type(space.part),
+        "section",
+        lambda self, *where: cut.append(where[1]) or section(self, *where),
+    )
+    kept = len(space.part._sections), len(space._above)
+    second = drive_of(space, right)
+    assert cut and (len(space.part._sections), len(space._above)) == kept
+    assert first.levels[0].bottom == pytest.approx(second.levels[0].bottom, abs=1e-6)

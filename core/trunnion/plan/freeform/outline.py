@@ -12,7 +12,7 @@ import shapely
 from trunnion import tolerance
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.curve_parts import parts_where
-from trunnion.geometry.plane.plan_area import EVEN, LAP, plan_area_above, region_of
+from trunnion.geometry.plane.plan_area import EVEN, LAP, region_of
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.operation import Operation
@@ -60,8 +60,10 @@ def outline_drive(operation: Operation, space: SurfaceSpace) -> PlaneDrive:
 def _outline(space: SurfaceSpace, tags: tuple[int, ...], bottom: float, top: float) -> Region:
     """Return the plan area of the part above a height, its sections' where that is all of it; along upright faces it is always theirs."""
     skin = space.skin
+    # Equal faces all round a wheel have the same heights but for noise, and then the same sections.
+    bottom, top = (round(z / tolerance.COINCIDENT) * tolerance.COINCIDENT for z in (bottom, top))
     outline = _of_sections(space, tags, bottom, top)
-    whole = plan_area_above(skin.points[skin.triangles], bottom + tolerance.OFF_PLANE, skin.bound)
+    whole = space.plan_above(bottom + tolerance.OFF_PLANE)
     apart = _apart(skin)
     beyond = whole.minus(outline.offset(apart))
     if not beyond:

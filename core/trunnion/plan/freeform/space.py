@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from trunnion.findings import Finding, face_tags
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.cache import Cache
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import Region
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
@@ -46,6 +49,10 @@ LEFTOVER = 2.0
 """Times the depth of cut: what operations before leave on faces at most."""
 
 
+KEPT = 32
+"""Heights whose plan areas are kept: more than the walls of most parts end at."""
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SurfaceSpace:
     """A part in its blank, seen from the tool's direction; everything is in the cutting frame.
@@ -61,6 +68,7 @@ class SurfaceSpace:
     low: Floats
     high: Floats
     _thick: list[OffsetFixture] = field(init=False, repr=False, default_factory=list)
+    _above: Cache[Region] = field(init=False, repr=False, default_factory=partial(Cache, KEPT))
 
     @staticmethod
     def of(
@@ -99,6 +107,13 @@ class SurfaceSpace:
     def around(self) -> Region:
         """Return the plan area of the blank and of the free space around it."""
         return Region.rectangle(*(self.low[:2] - AROUND), *(self.high[:2] + AROUND))
+
+    def plan_above(self, z: float) -> Region:
+        """Return the plan area of the part's triangles above a height, no smaller than the part's own; kept by height."""
+        skin = self.skin
+        return self._above.get(
+            z, lambda: plan_area_above(skin.points[skin.triangles], z, skin.bound)
+        )
 
     def seen_from(self, setup: Setup, direction: Direction) -> SurfaceSpace:
         """Return the same part seen from another direction given in the frame of the machine's setup."""
