@@ -309,11 +309,14 @@ def test_the_time_of_areas_stands_below_the_balance_of_operations(
         "op-03",
         "op-05",
         "op-07",
+        "remaining area in all",
         "pocket-01 in all",
         "pocket-02 in all",
         "pocket-03 in all",
     ]
-    assert areas.table.item(3, 1).text() == areas.table.item(0, 1).text()
+    assert areas.table.item(4, 1).text() == areas.table.item(0, 1).text()
+    each = [float(areas.table.item(r, 1).text()) for r in range(3)]
+    assert float(areas.table.item(3, 1).text()) == sum(each)
     # The floor of 104 x 124 and four walls 24 high.
     assert areas.table.item(0, 1).text() == f"{104 * 124 + 2 * (104 + 124) * 24}"
     assert (

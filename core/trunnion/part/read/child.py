@@ -83,6 +83,7 @@ class ReadingProcess:
                 progress.at(min(0.9, (now - self._began) / limit), f"reading {file}")
                 looked = now
             time.sleep(_LOOK)
+        progress.at(0.9, f"reading {file}")
 
 
 def _load() -> None:

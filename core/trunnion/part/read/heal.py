@@ -80,9 +80,9 @@ def _sewn(as_read: Shape) -> tuple[Shape, Image, list[Finding]]:
     if tool.NbFreeEdges():
         tolerated, tool = largest, _sewing(as_read, largest)
         for step in () if tool.NbFreeEdges() else between:
-            closer = _sewing(as_read, step)
-            if closer.NbFreeEdges() == 0:
-                tolerated, tool = step, closer
+            finer = _sewing(as_read, step)
+            if finer.NbFreeEdges() == 0:
+                tolerated, tool = step, finer
                 break
 
     def image(face: Shape) -> Shape:
