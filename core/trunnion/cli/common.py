@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion.findings import BadCall, BadInput, Finding, Severity, has_errors
-from trunnion.part.read.part_file import PartReading, is_part_file
+from trunnion.part.read.part_file import PartReading
 from trunnion.progress import Progress
+from trunnion.store.project_file import PROJECT_SUFFIX
 
 if TYPE_CHECKING:
     from trunnion.model.session import Session
@@ -137,9 +138,9 @@ def open_session(
     words, progress = words_of(options), progress_of(options)
     with ExitStack() as begun:
         reading = None
-        if is_part_file(options.part):
-            # While a process of its own reads the part, the program is loaded.
-            reading = begun.enter_context(PartReading(options.part, solid=options.solid))
+        if Path(options.part).suffix.lower() != PROJECT_SUFFIX:
+            reading = begun.enter_context(PartReading.of_file(options.part, solid=options.solid))
+        # While a process of its own reads the part, the program is loaded, and with its settings all families.
         from trunnion.pipeline import Engine
 
         engine = Engine(options.user_folder)

@@ -46,8 +46,8 @@ def add(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Make the cut, write the project and report which faces there are now."""
     from trunnion.geometry.cut import curve_cut, plane_cut
-    from trunnion.pipeline.engine import PROJECT_SUFFIX
     from trunnion.pipeline.planning.patches import with_cut
+    from trunnion.store.project_file import PROJECT_SUFFIX
 
     if (options.plane is None) == (not options.place):
         raise BadCall("a cut wants --plane, or --place twice or more; not both")

@@ -28,6 +28,7 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.report.picture_process import Ahead, Drawing, here
 from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import load_shop
+from trunnion.store.project_file import PROJECT_SUFFIX
 from trunnion.verify.settings import ProofSettings
 
 if TYPE_CHECKING:
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
     from trunnion.pipeline.proof.playback import Playback
     from trunnion.report.deviation import DeviationMap
 
-PROJECT_SUFFIX = ".trunnion"
 FRESH = ("done", "problem")
 _LAID = "toolpath"
 """The step after which a plan can be drawn."""

@@ -17,6 +17,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import suppress
+from operator import is_
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -63,7 +64,7 @@ class PictureProcess:
             stderr=subprocess.DEVNULL,
         )
         self._pool = ThreadPoolExecutor(1, "trunnion-pictures")
-        self._planned: tuple[object, ...] = ()
+        self._planned: tuple[object, ...] | None = None
         return self
 
     def __exit__(
@@ -89,9 +90,8 @@ class PictureProcess:
 
     def begin(self, session: Session, mesh: Mesh, folder: Path, name: str) -> Drawn:
         """Ask for the pictures `NAME.*.png` of a session in a folder; what is returned waits for them."""
-        same = [mine is its for mine, its in zip(self._planned, _plan_of(session), strict=False)]
-        request = (session, mesh, folder, name, bool(same) and all(same))
-        future = self._pool.submit(self._response_to, request)
+        same = self._planned is not None and all(map(is_, self._planned, _plan_of(session)))
+        future = self._pool.submit(self._response_to, (session, mesh, folder, name, same))
 
         def drawn(progress: Progress = NO_PROGRESS) -> tuple[Picture, ...]:
             progress.at(0.0, "drawing pictures")

@@ -141,19 +141,19 @@ def test_reading_that_needs_too_much_memory_says_so() -> None:
         read_part(samples.block_with_pocket(), limits=ReadLimits(memory=200))
 
 
-@pytest.mark.cold
 def test_a_reading_begun_before_gives_the_same_part_and_leaves_nothing_behind() -> None:
     file = samples.block_with_pocket()
-    with PartReading(file) as reading:
-        folder = Path(reading._child._folder.name)
+    with PartReading.of_file(file) as reading:
+        folder = Path(reading._process._folder.name)
         assert folder.is_dir()
         assert reading.part().to_bytes() == read_part(file).to_bytes()
-    with PartReading(file) as given_up:
-        left = Path(given_up._child._folder.name)
+    with PartReading.of_file(file) as given_up:
+        left = Path(given_up._process._folder.name)
     assert not folder.exists() and not left.exists()
-    assert given_up._child._child.poll() is not None
+    assert given_up._process._child.poll() is not None
 
 
+@pytest.mark.cold
 def test_reading_can_be_cancelled() -> None:
     asked = []
     with pytest.raises(Cancelled):

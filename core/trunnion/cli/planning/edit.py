@@ -63,8 +63,8 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Change the features, save the project and print those that a person changed."""
-    from trunnion.pipeline.engine import PROJECT_SUFFIX
     from trunnion.pipeline.planning import face_edits
+    from trunnion.store.project_file import PROJECT_SUFFIX
 
     if not (options.add or options.take or options.merge or options.make):
         raise BadCall("nothing to change: give --add, --take, --merge or --make")

@@ -29,7 +29,7 @@ _MEGA = 1 << 20
 
 
 class ReadingProcess:
-    """A fresh process that reads a part from a file's bytes, within limits; used in a `with` block, at whose end it is over."""
+    """A fresh process that reads a part from a file's bytes, within limits, until its `end`."""
 
     def __init__(self, request: ReadRequest, data: bytes, limits: ReadLimits) -> None:
         self._request, self._limits = request, limits
@@ -49,12 +49,6 @@ class ReadingProcess:
                 stderr=words,
                 env=os.environ | {"PYTHONIOENCODING": "utf-8"},
             )
-
-    def __enter__(self) -> ReadingProcess:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.end()
 
     def end(self) -> None:
         """End the process, at whatever it is, and remove its files."""
@@ -83,7 +77,6 @@ class ReadingProcess:
                 progress.at(min(0.9, (now - self._began) / limit), f"reading {file}")
                 looked = now
             time.sleep(_LOOK)
-        progress.at(0.9, f"reading {file}")
 
 
 def _load() -> None:

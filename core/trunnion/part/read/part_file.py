@@ -36,7 +36,7 @@ def read_part(
     `solid` chooses one of several solids, from 1; without it the largest is taken and a finding names the others. Raises `BadInput`
     with one line for a file that can't be used, `OutOfMemory` when reading needs more than `limits` allow, `Cancelled` on request.
     """
-    with PartReading(path, solid=solid, limits=limits) as reading:
+    with PartReading.of_file(path, solid=solid, limits=limits) as reading:
         return reading.part(progress)
 
 
@@ -51,66 +51,57 @@ def read_part_bytes(
 ) -> Part:
     """Return the part of a file's bytes, as `read_part` does; `name` and `suffix` are the file's."""
     file = name if name.endswith(suffix) else name + suffix
-    with _begun(data, file, file, solid, limits or ReadLimits()) as reading:
-        return _finished(reading, progress)
-
-
-def is_part_file(path: str | os.PathLike[str]) -> bool:
-    """Return whether a file's name is a part file's, not a project's."""
-    return Path(path).suffix.lower() in (*SUFFIXES, ".gz")
+    with PartReading(data, file, file, solid, limits or ReadLimits()) as reading:
+        return reading.part(progress)
 
 
 class PartReading:
     """The reading of a part file by a process of its own, from its beginning on; used in a `with` block, at whose end it is over."""
 
     def __init__(
-        self,
+        self, data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits
+    ) -> None:
+        """Begin to read the part of a file's bytes; raises `BadInput` where they are no part file's."""
+        plain = _unpacked(data, file, limits)
+        kind = kind_of(plain, file)
+        listed = check_step(plain, file) if kind == "step" else check_iges(plain, file)
+        request = ReadRequest(
+            file=file,
+            path=path,
+            name=_stem(file),
+            digest=hashlib.sha256(data).hexdigest(),
+            kind=kind,
+            listed=listed,
+            solid=solid,
+            size=len(plain),
+        )
+        self._process = ReadingProcess(request, plain, limits)
+
+    @staticmethod
+    def of_file(
         path: str | os.PathLike[str],
         *,
         solid: int | None = None,
         limits: ReadLimits | None = None,
-    ) -> None:
-        """Begin to read; raises `BadInput` for a file that is no part file."""
+    ) -> PartReading:
+        """Begin to read a part file; raises `BadInput` for a file that is none."""
         limits, file = limits or ReadLimits(), Path(path)
-        self._child = _begun(_bytes_of(file, limits), file.name, str(file), solid, limits)
+        return PartReading(_bytes_of(file, limits), file.name, str(file), solid, limits)
 
     def part(self, progress: Progress = NO_PROGRESS) -> Part:
         """Return the part once it is read; raises what `read_part` does."""
-        return _finished(self._child, progress)
+        progress.at(0.0, "reading")
+        read = self._process.response(progress)
+        # The CAD kernel takes a second to load: the process that reads the file has been at work meanwhile.
+        from trunnion.part.part import Part
+
+        return Part.from_bytes(read)
 
     def __enter__(self) -> PartReading:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._child.end()
-
-
-def _begun(
-    data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits
-) -> ReadingProcess:
-    plain = _unpacked(data, file, limits)
-    kind = kind_of(plain, file)
-    listed = check_step(plain, file) if kind == "step" else check_iges(plain, file)
-    request = ReadRequest(
-        file=file,
-        path=path,
-        name=_stem(file),
-        digest=hashlib.sha256(data).hexdigest(),
-        kind=kind,
-        listed=listed,
-        solid=solid,
-        size=len(plain),
-    )
-    return ReadingProcess(request, plain, limits)
-
-
-def _finished(reading: ReadingProcess, progress: Progress) -> Part:
-    progress.at(0.0, "reading")
-    read = reading.response(progress)
-    # The CAD kernel takes a second to load: the process that reads the file has been at work meanwhile.
-    from trunnion.part.part import Part
-
-    return Part.from_bytes(read)
+        self._process.end()
 
 
 def _bytes_of(file: Path, limits: ReadLimits) -> bytes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from trunnion.model.motion.toolpath import Mark
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
+from trunnion.pipeline.planning.patches import groups_of
 from trunnion.plan.freeform.estimate.finishing_time import Estimate, PathFigures, estimate_of
 from trunnion.toolpath.motion.time import machining_time
 
@@ -16,13 +17,13 @@ def estimate(session: Session, context: Context) -> Estimate | None:
     """
     if session.process is None:
         return None
-    groups = [f for f in session.recognition or () if "local" in f.attributes]
+    groups = groups_of(session.recognition) if session.recognition else ()
     return estimate_of(
         session.process,
         context.part.graph().area,
         _paths(session, context),
         {g.id: g.tags for g in groups},
-        [g.id for g in groups if g.attributes["local"]],
+        [g.id for g in groups if g.attributes.get("local")],
     )
 
 

@@ -139,7 +139,7 @@ def _recognition(session: Session) -> Recognition:
 
 
 def _group(found: Recognition, id: str) -> Feature:
-    groups = _groups(found)
+    groups = groups_of(found)
     for f in groups:
         if f.id == id:
             return f
@@ -155,12 +155,13 @@ def _no_groups() -> str:
     return f"the part's family has no groups of patches; choose recognize.family = {families}"
 
 
-def _groups(found: Recognition) -> tuple[Feature, ...]:
+def groups_of(found: Recognition) -> tuple[Feature, ...]:
+    """Return the groups of patches that were recognised; none in families without them."""
     return found.of_kind(*exclusive_kinds(found.family))
 
 
 def _new_group(found: Recognition, face: int) -> Feature:
-    from_group = next((f for f in _groups(found) if face in f.tags), None)
+    from_group = next((f for f in groups_of(found) if face in f.tags), None)
     if from_group is None and not exclusive_kinds(found.family):
         raise BadInput(_no_groups())
     kind = exclusive_kinds(found.family)[0]
@@ -178,4 +179,4 @@ def _faces(tags: Iterable[int]) -> tuple[FaceRole, ...]:
 
 
 def _local(found: Recognition) -> set[int]:
-    return {t for f in _groups(found) if f.attributes.get("local") for t in f.tags}
+    return {t for f in groups_of(found) if f.attributes.get("local") for t in f.tags}

@@ -1,0 +1,3 @@
+"""The ending of a project file's name."""
+
+PROJECT_SUFFIX = ".trunnion"
