@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,41 +27,39 @@ class SheetLine:
         share = self.share.reshape(-1, *([1] * (field.ndim - 1)))
         return np.asarray((1.0 - share) * field[self.ends[:, 0]] + share * field[self.ends[:, 1]])
 
-    def on(self, sheet: Sheet, wanted: Bools) -> list[SheetLine]:
-        """Return the pieces of the line over triangles that are wanted (t,), both of whose ends are on their sides."""
-        if wanted.all():
-            return [self]
-        n = len(sheet.points)
-        ends, side = sheet.edges()
-        real = np.zeros(len(ends), bool)
-        real[side[wanted]] = True
-        key = ends[:, 0] * n + ends[:, 1]
-        on = real[np.searchsorted(key, self.ends.min(axis=1) * n + self.ends.max(axis=1))]
-        if on.all():
-            return [self]
-        rows = np.arange(len(on))
-        if self.closed:
-            first = int(np.flatnonzero(~on)[0])
-            rows = np.append(np.roll(rows[:-1], -first), first)
-        edges = np.flatnonzero(np.diff(on[rows].astype(np.int8), prepend=0, append=0)).reshape(
-            -1, 2
-        )
-        return [
-            SheetLine(
-                ends=self.ends[rows[a:b]],
-                share=self.share[rows[a:b]],
-                closed=False,
-                level=self.level,
-            )
-            for a, b in edges.tolist()
-            if b - a > 1
-        ]
-
-    def of(self, rows: Bools | slice) -> SheetLine:
+    def of(self, rows: Bools | Ints | slice) -> SheetLine:
         """Return a part of the line, open."""
         return SheetLine(
             ends=self.ends[rows], share=self.share[rows], closed=False, level=self.level
         )
+
+
+def pieces_over(lines: Sequence[SheetLine], sheet: Sheet, wanted: Bools) -> list[SheetLine]:
+    """Return the pieces of lines over triangles that are wanted (t,), both of whose ends are on their sides."""
+    if wanted.all():
+        return list(lines)
+    n = len(sheet.points)
+    ends, side = sheet.edges()
+    real = np.zeros(len(ends), bool)
+    real[side[wanted]] = True
+    key = ends[:, 0] * n + ends[:, 1]
+    found = []
+    for line in lines:
+        crossed = np.searchsorted(key, line.ends.min(axis=1) * n + line.ends.max(axis=1))
+        found += _pieces(line, real[crossed])
+    return found
+
+
+def _pieces(line: SheetLine, on: Bools) -> list[SheetLine]:
+    """Return the pieces of a line of two and more crossings (k,) that are wanted."""
+    if on.all():
+        return [line]
+    rows = np.arange(len(on))
+    if line.closed:
+        first = int(np.flatnonzero(~on)[0])
+        rows = np.append(np.roll(rows[:-1], -first), first)
+    edges = np.flatnonzero(np.diff(on[rows].astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+    return [line.of(rows[a:b]) for a, b in edges.tolist() if b - a > 1]
 
 
 def whole_levels(sheet: Sheet, field: Floats, turns: Ints | None = None) -> list[SheetLine]:

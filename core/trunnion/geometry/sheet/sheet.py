@@ -8,7 +8,7 @@ through both ends of the edge (Vlachos, Curved PN Triangles), so that they leave
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -34,6 +34,7 @@ class Sheet:
     normals: Floats
     triangles: Ints
     face: Ints
+    _edges: list[tuple[Ints, Ints]] = field(init=False, repr=False, default_factory=list)
 
     def on_edges(self, ends: Ints, share: Floats) -> tuple[Floats, Floats]:
         """Return points and normals (k, 3) on the curved edges between points `ends` (k, 2), at shares (k,) of their way."""
@@ -45,7 +46,9 @@ class Sheet:
 
         Side k runs from a triangle's corner k to the next one.
         """
-        return edges_of(self.triangles, len(self.points))
+        if not self._edges:
+            self._edges.append(edges_of(self.triangles, len(self.points)))
+        return self._edges[0]
 
     def rims(self) -> list[Ints]:
         """Return the loops of points (k,) where the sheet ends, the sheet on their left; the longest one first."""

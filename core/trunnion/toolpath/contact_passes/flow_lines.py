@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.sheet.contours import SheetLine, whole_levels
+from trunnion.geometry.sheet.contours import SheetLine, pieces_over, whole_levels
 from trunnion.geometry.sheet.fields import Metric, blend, turns_about
 from trunnion.geometry.sheet.refine_sheet import split_finely
 from trunnion.geometry.sheet.sheet import Sheet, sheet_of
@@ -118,7 +118,7 @@ def _lines(metric: Metric, guides: Guides, spiral: bool, progress: Progress) -> 
     lines = [_turned(line) for line in whole_levels(metric.sheet, field * count + 0.5)]
     if spiral and guides.rings and count > 1:
         return _wound(metric, guides, field, count, lines)
-    return [piece for line in lines for piece in line.on(metric.sheet, real)]
+    return pieces_over(lines, metric.sheet, real)
 
 
 def _wound(
