@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 
 from trunnion.progress import Progress
 
@@ -23,33 +23,33 @@ def in_parallel(
     """Call `work(first, last)` for all of `count` rows in chunks, on `threads` threads (0: one a core).
 
     `work` must let go of the interpreter's lock, touch nothing but its own rows, and end a chunk in a tenth of a second or so. Raises what
-    progress raises on cancel; chunks at work end first.
+    progress raises on cancel, and what `work` raises; chunks at work end first.
     """
-    starts = list(range(0, count, chunk))
+    starts = range(0, count, chunk)
     threads = min(threads or os.cpu_count() or 1, len(starts))
     if threads <= 1:
         for first in starts:
             progress.at(first / count, text)
             work(first, min(first + chunk, count))
         return
+    # An iterator over a range hands out each start once, to whichever thread is free, without a lock.
+    left, taken = iter(starts), [0]
+
+    def loop() -> None:
+        for first in left:
+            taken[0] = first
+            work(first, min(first + chunk, count))
+
+    progress.at(0.0, text)
     with ThreadPoolExecutor(threads) as pool:
-        waiting: set[Future[None]] = set()
+        waiting = {pool.submit(loop) for _ in range(threads)}
         try:
-            for n, first in enumerate(starts):
-                while len(waiting) >= 2 * threads:
-                    waiting = _collected(waiting)
-                    progress.at((n - len(waiting)) / len(starts), text)
-                waiting.add(pool.submit(work, first, min(first + chunk, count)))
             while waiting:
-                progress.at((len(starts) - len(waiting)) / len(starts), text)
-                waiting = _collected(waiting)
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
-
-
-def _collected(waiting: set[Future[None]]) -> set[Future[None]]:
-    done, rest = wait(waiting, timeout=LOOK, return_when=FIRST_COMPLETED)
-    for future in done:
-        future.result()
-    return rest
+                done, waiting = wait(waiting, timeout=LOOK, return_when=FIRST_EXCEPTION)
+                for future in done:
+                    future.result()
+                progress.at(taken[0] / count, text)
+        finally:
+            # After an error or a cancel nobody takes another chunk.
+            for _ in left:
+                pass
