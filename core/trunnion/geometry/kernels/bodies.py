@@ -12,7 +12,7 @@ from numba import njit
 from trunnion.geometry.arrays import Bools, Floats
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def bodies_hold(points: Floats, tips: Floats, axes: Floats, rows: Floats, held: Bools) -> None:
     """Fill `held` (k,) with whether a body at tips (k, 3) with axes (k, 3) holds any of points (m, 3)."""
     low, high, widest = rows[0, 0], rows[0, 2], 0.0

@@ -9,7 +9,7 @@ eased, and every eased axis is queried again. Where no axis is free the pass has
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -337,11 +337,16 @@ class AxisSearch:
             for s in at
         ]
 
-    def met(self, number: int, positions: Floats) -> None:
-        """Take in that on the pass of a number something was met at samples (k,): the axes to both sides of them won't do."""
-        start, end = self.samples.start[number : number + 2]
-        after = np.searchsorted(self.samples.position[start:end], positions)
-        rows = start + np.unique(np.clip(np.concatenate([after - 1, after]), 0, end - start - 1))
+    def met(self, positions: Mapping[int, Floats]) -> None:
+        """Take in that on passes, by their numbers, something was met at samples (k,): the axes to both sides of them won't do."""
+        found = [np.zeros(0, dtype=np.int64)]
+        for number, samples in positions.items():
+            start, end = self.samples.start[number : number + 2]
+            after = np.searchsorted(self.samples.position[start:end], samples)
+            found.append(
+                start + np.unique(np.clip(np.concatenate([after - 1, after]), 0, end - start - 1))
+            )
+        rows = np.concatenate(found)
         rows = rows[self.free[rows]]
         self.clear[rows] = self.free[rows] = False
         self._learn(rows)

@@ -22,7 +22,7 @@ def axis_turn() -> Any:
 def finishing_chord(surface: str) -> Any:
     """Return the field of the chord error of a finished surface, which is named."""
     return setting(
-        0.001,
+        0.002,
         unit="mm",
         low=0.0001,
         high=0.1,

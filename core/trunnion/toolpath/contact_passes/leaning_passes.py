@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, C
+from trunnion.geometry.sphere import angle_between
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at, touching
@@ -32,7 +33,12 @@ from trunnion.toolpath.contact_passes.passes import Pass
 
 SHARES = (0.25, 0.5, 0.75)
 """Where on a block its chord error is looked at, beside the contacts on its path."""
-HALVINGS = 12
+HALVINGS = 16
+"""Times that a block is halved at most."""
+MOST_AXES, FEWEST_BLOCKS = 16, 4
+"""Chosen axes that one block spans at most, and blocks that a pass has at least before they are halved: the ends of a loop meet."""
+ASTRAY = math.radians(0.1)
+"""rad: how far a block's axis may be from the one that was chosen, between its ends."""
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
 OVERLAP = 0.25
@@ -73,16 +79,18 @@ def milled(
     again = list(range(len(contact_lines)))
     for n in range(TRIES):
         share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
-        for k in share.over(again, "Following flow lines with a leaning tool"):
-            found[k], met = _cut(
-                [
-                    located(contact_lines[k], run, tool, chord, allowance)
-                    for run in axes_of_lines[k].runs()
-                ],
-                query,
-            )
-            if len(met) and n + 1 < TRIES:
-                search.met(k, met)
+        runs = [
+            [
+                located(contact_lines[k], run, tool, chord, allowance)
+                for run in axes_of_lines[k].runs()
+            ]
+            for k in share.over(again, "Following flow lines with a leaning tool")
+        ]
+        cut = _cut(runs, query)
+        for k, (pieces, _) in zip(again, cut, strict=True):
+            found[k] = pieces
+        if n + 1 < TRIES:
+            search.met({k: met for k, (_, met) in zip(again, cut, strict=True) if len(met)})
         again = np.flatnonzero(search.dirty).tolist()
         axes_of_lines = search.found_axes(share) if again else axes_of_lines
     # What no pass covers is the rest, in rows of the contacts: left to a thinner tool or reported.
@@ -147,14 +155,17 @@ def located(
     """Return where a cutter is along a run of a contact pass: the positions (k,) of the path and the pass itself."""
     radius, feed = max(tool.corner_radius, 0.25 * tool.radius), contacts.feed
     travel = contacts.travel(radius)
-    position = run.position
-    rows = np.arange(len(contacts), dtype=np.float64)
-    rows = rows[(rows > position[0]) & (rows < position[-1])]
+    chosen = run.position
+    stride = max(1, min(MOST_AXES, (len(chosen) - 1) // FEWEST_BLOCKS))
+    position = np.append(chosen[:-1:stride], chosen[-1])
+    inner = np.concatenate([np.arange(len(contacts), dtype=np.float64), chosen[1:-1]])
+    inner = inner[(inner > position[0]) & (inner < position[-1])]
     normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
-    # Halve: off is the distance between the straight block and the contact's tip, along the face's normal.
+    # Halve: off is the distance between the straight block and the contact's tip, along the face's normal; astray is the angle between
+    # the block's axis, which turns evenly, and the one that was chosen.
     for _ in range(HALVINGS):
         share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
-        probe = np.concatenate([rows, share])
+        probe = np.concatenate([inner, share])
         block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
         gone = np.interp(probe, np.arange(len(contacts)), travel)
         ends = np.interp(position, np.arange(len(contacts)), travel)
@@ -169,10 +180,11 @@ def located(
         off = np.abs(
             ((tip_at_block - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1)
         )
+        astray = angle_between(turned, run.at(probe))
         worst = np.zeros(len(position) - 1)
-        np.maximum.at(worst, block, off)
+        np.maximum.at(worst, block, np.maximum(off / chord, astray / ASTRAY))
         split = np.flatnonzero(
-            (worst > chord)
+            (worst > 1.0)
             & (np.linalg.norm(np.diff(tip, axis=0), axis=1) > 2.0 * tolerance.SHORT_MOVE)
         )
         if not len(split):
@@ -228,17 +240,34 @@ def _poses_at(
 
 
 def _cut(
-    runs: Sequence[tuple[Floats, Pass]], query: ClearanceQuery | None
-) -> tuple[list[tuple[Floats, Pass]], Floats]:
-    """Return the stretches of runs whose moves are clear, and the positions where a move is not."""
+    runs: Sequence[Sequence[tuple[Floats, Pass]]], query: ClearanceQuery | None
+) -> list[tuple[list[tuple[Floats, Pass]], Floats]]:
+    """Return for the runs of each line the stretches whose moves are clear, and the positions where a move is not."""
     if query is None:
-        return list(runs), np.zeros(0)
-    pieces, met = [], [np.zeros(0)]
-    for position, one in runs:
-        clear = query(one.tip[1:], one.axis[1:], start_tip=one.tip[:-1], start_axis=one.axis[:-1])
-        pieces += [(position[s], one.of(s)) for s in _stretches(clear)]
-        met.append(0.5 * (position[:-1] + position[1:])[~clear])
-    return pieces, np.concatenate(met)
+        return [(list(some), np.zeros(0)) for some in runs]
+    # All moves are asked for together: a pass alone is too short a work for two cores.
+    every = [one for some in runs for _, one in some]
+    empty = np.zeros((0, 3))
+    end, end_axis, start, start_axis = (
+        np.concatenate([empty, *parts])
+        for parts in (
+            [p.tip[1:] for p in every],
+            [p.axis[1:] for p in every],
+            [p.tip[:-1] for p in every],
+            [p.axis[:-1] for p in every],
+        )
+    )
+    clear = query(end, end_axis, start_tip=start, start_axis=start_axis)
+    own = iter(np.split(clear, np.cumsum([len(p) - 1 for p in every])))
+    cut = []
+    for some in runs:
+        pieces, met = [], [np.zeros(0)]
+        for position, one in some:
+            is_clear = next(own)
+            pieces += [(position[s], one.of(s)) for s in _stretches(is_clear)]
+            met.append(0.5 * (position[:-1] + position[1:])[~is_clear])
+        cut.append((pieces, np.concatenate(met)))
+    return cut
 
 
 def _stretches(clear: Bools) -> list[slice]:

@@ -18,12 +18,13 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.kernels.bodies import bodies_hold
 from trunnion.model.blank import Blank
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.threads import in_parallel
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 CELL, MOST = 1.0, 400_000
 """mm between positions, and how many of them a blank has at most: beyond, they lie farther apart."""
-POSES = 2000
-"""Poses that are held against what stands between two looks at cancel."""
+POSES = 500
+"""Poses that one thread holds against what stands before it looks for more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -71,15 +72,17 @@ class RemainingStock:
         body = np.array([(z0 - wider, r0 + wider, z1, r1 + wider) for z0, r0, z1, r1 in rows])
         held = np.zeros(len(tip), dtype=bool)
         if len(self.points) and len(body):
-            for first in progress.each(range(0, len(tip), POSES)):
-                some = slice(first, first + POSES)
+
+            def work(first: int, last: int) -> None:
                 bodies_hold(
                     self.points,
-                    np.ascontiguousarray(tip[some]),
-                    np.ascontiguousarray(axis[some]),
+                    np.ascontiguousarray(tip[first:last]),
+                    np.ascontiguousarray(axis[first:last]),
                     body,
-                    held[some],
+                    held[first:last],
                 )
+
+            in_parallel(work, len(tip), POSES, progress, "Looking for what stands in the way")
         return ~held
 
 

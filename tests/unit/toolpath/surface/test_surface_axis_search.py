@@ -157,7 +157,7 @@ def test_a_move_that_touches_makes_the_search_choose_others() -> None:
     )
     (before,) = search.found_axes()
     for _ in range(4):
-        search.met(0, np.array([30.5]))
+        search.met({0: np.array([30.5])})
         (after,) = search.found_axes()
     assert np.abs(after.axis - before.axis).max() > 0.05 and after.free.all()
 

@@ -96,6 +96,46 @@ def test_a_ball_stays_within_the_chord_error_of_a_face_all_along_its_blocks(face
     assert np.abs(off).max() < 1.2 * CHORD + 2e-5
 
 
+def test_blocks_are_as_long_as_the_chord_error_and_the_axis_allow() -> None:
+    way = helix(8.0)
+    done = {
+        chord: milled([way], BALL, LEAD, None, LeanLimits(turn=math.radians(40.0)), chord).passes
+        for chord in (CHORD, 16.0 * CHORD)
+    }
+    fine, coarse = (sum(len(one) - 1 for one in some) for some in done.values())
+    # The arc over a block rises with the square of its length: 16 times the error, blocks 4 times as long, but for halving's steps.
+    assert 2.0 <= fine / coarse <= 8.0
+    plane = Contacts(
+        point=np.column_stack([np.linspace(0.0, 60.0, 61), np.zeros(61), np.zeros(61)]),
+        normal=np.tile([0.0, 0.0, 1.0], (61, 1)),
+    )
+    (straight,) = milled([plane], BALL, LEAD, None, LeanLimits(), CHORD).passes
+    assert len(straight) - 1 <= 5
+    # Over a plane only the axis bends: it goes from one side to the other and back.
+    swing = math.radians(20.0)
+
+    def swung(point, normal, feed):
+        angle = swing * np.sin(point[:, 0] / 10.0)
+        return np.column_stack([np.zeros(len(point)), np.sin(angle), np.cos(angle)])
+
+    (leaning_over,) = milled([plane], BALL, swung, None, LeanLimits(), CHORD).passes
+    (finely,) = milled([plane], BALL, swung, None, LeanLimits(), 0.01 * CHORD).passes
+    assert len(straight) < len(leaning_over) < 61
+    turned = slerp(
+        leaning_over.axis[:-1], leaning_over.axis[1:], np.full(len(leaning_over) - 1, 0.5)
+    )
+    middle = 0.5 * (leaning_over.tip[:-1] + leaning_over.tip[1:]) + BALL.radius * turned
+    there = np.column_stack(
+        [
+            np.interp(middle[:, 0], (finely.tip + BALL.radius * finely.axis)[:, 0], a)
+            for a in finely.axis.T
+        ]
+    )
+    assert (
+        np.degrees(np.arccos(np.clip((turned * unit(there)).sum(axis=1), -1.0, 1.0))).max() < 0.15
+    )
+
+
 @pytest.mark.parametrize("form", ["bull", "taper", "barrel"])
 def test_any_form_of_cutter_touches_a_cylinder_within_the_chord_error(form: str) -> None:
     tool, chord, radius = EVERY_FORM[form], 0.002, 25.0
@@ -264,7 +304,11 @@ def test_after_an_earlier_cutter_only_what_it_left_is_milled() -> None:
         setup,
         choose(PointSettings, {}),
     )
-    cut = plan.path.position[plan.path.mark == 0] + 3.0 * plan.path.axis[plan.path.mark == 0]
+    # Blocks are long on a plane: where one begins counts as much as where it ends.
+    rows = np.flatnonzero(plan.path.mark == 0)
+    rows = np.union1d(rows, rows - 1)
+    cut = plan.path.position[rows] + 3.0 * plan.path.axis[rows]
+    cut = cut[cut[:, 2] < 3.0 + DATA.depth]
     # The earlier cutter had come to y = 4: passes are 1 mm apart, and one more overlaps what it did.
     assert (
         cut[:, 1].max() == approx(6.5) and 1.0 < cut[:, 1].min() < 4.0 and np.ptp(cut[:, 0]) > 18.9
