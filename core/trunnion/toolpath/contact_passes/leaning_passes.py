@@ -37,7 +37,7 @@ HALVINGS = 16
 """Times that a block is halved at most."""
 MOST_AXES, FEWEST_BLOCKS = 16, 4
 """Chosen axes that one block spans at most, and blocks that a pass has at least before they are halved: the ends of a loop meet."""
-ASTRAY = math.radians(0.1)
+ASTRAY = math.radians(0.5)
 """rad: how far a block's axis may be from the one that was chosen, between its ends."""
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
@@ -81,7 +81,7 @@ def milled(
         share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
         runs = [
             [
-                located(contact_lines[k], run, tool, chord, allowance)
+                LocatedRun.of(contact_lines[k], run, tool, chord, allowance)
                 for run in axes_of_lines[k].runs()
             ]
             for k in share.over(again, "Following flow lines with a leaning tool")
@@ -117,6 +117,102 @@ def milled(
     )
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class LocatedRun:
+    """A run of axes along a contact pass, and the cutter on it: the `positions` (k,) of the poses along the contacts, and the poses."""
+
+    contacts: Contacts
+    run: FreeAxes
+    tool: Tool
+    allowance: float
+    position: Floats
+    poses: Pass
+
+    @staticmethod
+    def of(
+        contacts: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
+    ) -> LocatedRun:
+        """Return where a cutter is along a run, in blocks as long as the chord error (mm) and the chosen axes allow."""
+        chosen = run.position
+        stride = max(1, min(MOST_AXES, (len(chosen) - 1) // FEWEST_BLOCKS))
+        position = np.append(chosen[:-1:stride], chosen[-1])
+        made = LocatedRun.at(contacts, run, tool, allowance, position)
+        radius = max(tool.corner_radius, 0.25 * tool.radius)
+        travel = contacts.travel(radius)
+        inner = np.concatenate([np.arange(len(contacts), dtype=np.float64), chosen[1:-1]])
+        inner = inner[(inner > position[0]) & (inner < position[-1])]
+        for _ in range(HALVINGS):
+            worst = made._off(inner, travel, chord)
+            split = np.flatnonzero(
+                (worst > 1.0)
+                & (
+                    np.linalg.norm(np.diff(made.poses.tip, axis=0), axis=1)
+                    > 2.0 * tolerance.SHORT_MOVE
+                )
+            )
+            if not len(split):
+                break
+            middles = 0.5 * (made.position[split] + made.position[split + 1])
+            made = made.with_positions(middles)
+        return made
+
+    @staticmethod
+    def at(
+        contacts: Contacts, run: FreeAxes, tool: Tool, allowance: float, position: Floats
+    ) -> LocatedRun:
+        """Return the run with poses at positions (k,)."""
+        point, normal = between(contacts.point, contacts.normal, contacts.feed, position)
+        axis = run.at(position)
+        tip = tip_at(tool, point + allowance * normal, normal, axis)
+        return LocatedRun(
+            contacts=contacts,
+            run=run,
+            tool=tool,
+            allowance=allowance,
+            position=position,
+            poses=Pass(tip=tip, axis=axis, normal=normal),
+        )
+
+    def with_positions(self, more: Floats) -> LocatedRun:
+        """Return the run with poses at more positions (m,)."""
+        position = np.union1d(self.position, more)
+        return LocatedRun.at(self.contacts, self.run, self.tool, self.allowance, position)
+
+    def chosen_within(self, blocks: Bools) -> Floats:
+        """Return the positions (m,) of chosen axes within some of the blocks (k - 1,)."""
+        block = np.searchsorted(self.position, self.run.position, side="right") - 1
+        inside = (block < len(blocks)) & ~np.isin(self.run.position, self.position)
+        return self.run.position[inside & blocks[np.minimum(block, len(blocks) - 1)]]
+
+    def _off(self, inner: Floats, travel: Floats, chord: float) -> Floats:
+        """Return how far each block (k - 1,) is off, in what it may be: the straight block from the contact's tip along the face's normal,
+        against the chord error, and its axis, which turns evenly, from the chosen one, against `ASTRAY`.
+
+        `inner` (m,): positions that are looked at beside `SHARES` of each block; travel (n,): how far the cutter has come at each contact.
+        """
+        position, tip, axis = self.position, self.poses.tip, self.poses.axis
+        share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
+        probe = np.concatenate([inner, share])
+        block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
+        gone = np.interp(probe, np.arange(len(travel)), travel)
+        ends = np.interp(position, np.arange(len(travel)), travel)
+        part = np.clip(
+            (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
+            0.0,
+            1.0,
+        )
+        turned = slerp(axis[block], axis[block + 1], part)
+        c = self.contacts
+        at, out = between(c.point, c.normal, c.feed, probe)
+        tip_at_block = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
+        wanted = tip_at(self.tool, at + self.allowance * out, out, turned)
+        off = np.abs(((tip_at_block - wanted) * out).sum(axis=1))
+        astray = angle_between(turned, self.run.at(probe))
+        worst = np.zeros(len(position) - 1)
+        np.maximum.at(worst, block, np.maximum(off / chord, astray / ASTRAY))
+        return worst
+
+
 def rest_of(
     contact_lines: Sequence[Contacts],
     earlier: Tool,
@@ -147,53 +243,6 @@ def rest_of(
         edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]]).astype(np.int64)))
         found += [contacts.of(slice(a, b)) for a, b in edges.reshape(-1, 2).tolist() if b - a > 1]
     return tuple(found)
-
-
-def located(
-    contacts: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
-) -> tuple[Floats, Pass]:
-    """Return where a cutter is along a run of a contact pass: the positions (k,) of the path and the pass itself."""
-    radius, feed = max(tool.corner_radius, 0.25 * tool.radius), contacts.feed
-    travel = contacts.travel(radius)
-    chosen = run.position
-    stride = max(1, min(MOST_AXES, (len(chosen) - 1) // FEWEST_BLOCKS))
-    position = np.append(chosen[:-1:stride], chosen[-1])
-    inner = np.concatenate([np.arange(len(contacts), dtype=np.float64), chosen[1:-1]])
-    inner = inner[(inner > position[0]) & (inner < position[-1])]
-    normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
-    # Halve: off is the distance between the straight block and the contact's tip, along the face's normal; astray is the angle between
-    # the block's axis, which turns evenly, and the one that was chosen.
-    for _ in range(HALVINGS):
-        share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
-        probe = np.concatenate([inner, share])
-        block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
-        gone = np.interp(probe, np.arange(len(contacts)), travel)
-        ends = np.interp(position, np.arange(len(contacts)), travel)
-        part = np.clip(
-            (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
-            0.0,
-            1.0,
-        )
-        turned = slerp(axis[block], axis[block + 1], part)
-        at, out = between(contacts.point, contacts.normal, feed, probe)
-        tip_at_block = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
-        off = np.abs(
-            ((tip_at_block - tip_at(tool, at + allowance * out, out, turned)) * out).sum(axis=1)
-        )
-        astray = angle_between(turned, run.at(probe))
-        worst = np.zeros(len(position) - 1)
-        np.maximum.at(worst, block, np.maximum(off / chord, astray / ASTRAY))
-        split = np.flatnonzero(
-            (worst > 1.0)
-            & (np.linalg.norm(np.diff(tip, axis=0), axis=1) > 2.0 * tolerance.SHORT_MOVE)
-        )
-        if not len(split):
-            break
-        position = np.sort(
-            np.concatenate([position, 0.5 * (position[split] + position[split + 1])])
-        )
-        normal, axis, tip = _poses_at(contacts, feed, run, tool, allowance, position)
-    return position, Pass(tip=tip, axis=axis, normal=normal)
 
 
 def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
@@ -230,44 +279,43 @@ def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
     )
 
 
-def _poses_at(
-    contacts: Contacts, feed: Floats, run: FreeAxes, tool: Tool, allowance: float, position: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Return the normals, axes and tips (k, 3) at positions (k,) of a run."""
-    point, normal = between(contacts.point, contacts.normal, feed, position)
-    axis = run.at(position)
-    return normal, axis, tip_at(tool, point + allowance * normal, normal, axis)
-
-
 def _cut(
-    runs: Sequence[Sequence[tuple[Floats, Pass]]], query: ClearanceQuery | None
+    runs: Sequence[Sequence[LocatedRun]], query: ClearanceQuery | None
 ) -> list[tuple[list[tuple[Floats, Pass]], Floats]]:
     """Return for the runs of each line the stretches whose moves are clear, and the positions where a move is not."""
-    if query is None:
-        return [(list(some), np.zeros(0)) for some in runs]
-    # All moves are asked for together: a pass alone is too short a work for two cores.
-    every = [one for some in runs for _, one in some]
-    empty = np.zeros((0, 3))
-    end, end_axis, start, start_axis = (
-        np.concatenate([empty, *parts])
-        for parts in (
-            [p.tip[1:] for p in every],
-            [p.axis[1:] for p in every],
-            [p.tip[:-1] for p in every],
-            [p.axis[:-1] for p in every],
-        )
-    )
-    clear = query(end, end_axis, start_tip=start, start_axis=start_axis)
-    own = iter(np.split(clear, np.cumsum([len(p) - 1 for p in every])))
-    cut = []
+    every = [run for some in runs for run in some]
+    clear = _clear(every, query)
+    # A long block that touches something is tried again from one chosen axis to the next: these poses are clear.
+    more = [run.chosen_within(~own) for run, own in zip(every, clear, strict=True)]
+    again = [k for k, positions in enumerate(more) if len(positions)]
+    for k in again:
+        every[k] = every[k].with_positions(more[k])
+    for k, own in zip(again, _clear([every[k] for k in again], query), strict=True):
+        clear[k] = own
+    found, number = [], iter(range(len(every)))
     for some in runs:
-        pieces, met = [], [np.zeros(0)]
-        for position, one in some:
-            is_clear = next(own)
-            pieces += [(position[s], one.of(s)) for s in _stretches(is_clear)]
-            met.append(0.5 * (position[:-1] + position[1:])[~is_clear])
-        cut.append((pieces, np.concatenate(met)))
-    return cut
+        pieces, met = list[tuple[Floats, Pass]](), [np.zeros(0)]
+        for _ in some:
+            k = next(number)
+            position, poses = every[k].position, every[k].poses
+            pieces += [(position[s], poses.of(s)) for s in _stretches(clear[k])]
+            met.append(0.5 * (position[:-1] + position[1:])[~clear[k]])
+        found.append((pieces, np.concatenate(met)))
+    return found
+
+
+def _clear(runs: Sequence[LocatedRun], query: ClearanceQuery | None) -> list[Bools]:
+    """Return which blocks of runs are clear, asked for all together: a pass alone is too short a work for two cores."""
+    if query is None or not runs:
+        return [np.ones(len(run.position) - 1, bool) for run in runs]
+    poses = [run.poses for run in runs]
+    clear = query(
+        np.concatenate([p.tip[1:] for p in poses]),
+        np.concatenate([p.axis[1:] for p in poses]),
+        start_tip=np.concatenate([p.tip[:-1] for p in poses]),
+        start_axis=np.concatenate([p.axis[:-1] for p in poses]),
+    )
+    return np.split(clear, np.cumsum([len(p) - 1 for p in poses])[:-1])
 
 
 def _stretches(clear: Bools) -> list[slice]:

@@ -19,6 +19,7 @@ from trunnion.settings import choose
 from trunnion.toolpath.contact_passes.axis_fields import fixed, leaning
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits, thickened
 from trunnion.toolpath.contact_passes.contacts import Contacts, slerp
+from trunnion.toolpath.contact_passes.leaning_passes import ASTRAY
 from trunnion.toolpath.contact_passes.passes import UPRIGHT
 from trunnion.toolpath.surface.point import PointSettings, field_of, grooving, milled, point
 
@@ -131,9 +132,20 @@ def test_blocks_are_as_long_as_the_chord_error_and_the_axis_allow() -> None:
             for a in finely.axis.T
         ]
     )
-    assert (
-        np.degrees(np.arccos(np.clip((turned * unit(there)).sum(axis=1), -1.0, 1.0))).max() < 0.15
+    assert np.arccos(np.clip((turned * unit(there)).sum(axis=1), -1.0, 1.0)).max() < 1.1 * ASTRAY
+
+
+def test_a_long_block_that_touches_something_is_tried_in_short_ones_before_it_is_left() -> None:
+    plane = Contacts(
+        point=np.column_stack([np.linspace(0.0, 60.0, 61), np.zeros(61), np.zeros(61)]),
+        normal=np.tile([0.0, 0.0, 1.0], (61, 1)),
     )
+
+    def short_moves_only(tip, axis, *, start_tip=None, start_axis=None):
+        return np.linalg.norm(tip - (tip if start_tip is None else start_tip), axis=1) < 2.0
+
+    done = milled([plane], BALL, LEAD, short_moves_only, LeanLimits(), CHORD)
+    assert done.remaining == 0.0 and not done.rest
 
 
 @pytest.mark.parametrize("form", ["bull", "taper", "barrel"])

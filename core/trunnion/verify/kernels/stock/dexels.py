@@ -84,6 +84,8 @@ BENT = 0.01
 """mm that boxes are wider by where a tool turns: its points leave the straight ways between both ends by a few micrometres."""
 LEVEL = 1e-9
 """An axis this close (its sine) lies along rays or across them, and a move this close (mm) is level."""
+EDGE = 1e-5
+"""mm that a capsule is wider by: what its rows are rounded by where its axis runs nearly along them."""
 THIN = 1e-6
 """mm: material thinner than this is nothing."""
 
@@ -374,6 +376,57 @@ def _swept_box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
             p, q = tip + a * piece[Z_LOW], tip + a * piece[Z_HIGH]
             low, high = min(low, min(p, q) - across), max(high, max(p, q) + across)
         box[m], box[3 + m] = low, high
+
+
+@njit(cache=True, nogil=True)
+def _swept_capsule(capsule: Floats, span: Floats, piece: Floats, turns: bool) -> None:
+    """Write capsule (5,): the (u, v) of both ends of a piece's axis half-way through a span, and the radius (mm)
+    within which all lies that the piece sweeps; infinite for an arc that is one span.
+
+    Between both times a point of the axis runs straight: nowhere farther from its middle than half its way.
+    """
+    capsule[4] = np.inf
+    if span[ARC_RADIUS] != 0.0:
+        return
+    way = 0.0
+    for end in range(2):
+        z, square = piece[Z_LOW] if end == 0 else piece[Z_HIGH], 0.0
+        for m in range(2):
+            p = span[TIP0 + m] + z * span[FRAME0 + 6 + m]
+            q = span[TIP1 + m] + z * span[FRAME1 + 6 + m]
+            capsule[2 * end + m] = 0.5 * (p + q)
+            square += (q - p) * (q - p)
+        way = max(way, math.sqrt(square))
+    capsule[4] = piece[R_MAX] + 0.5 * way + (BENT if turns else 0.0) + EDGE
+
+
+@njit(cache=True, nogil=True)
+def _capsule_row(capsule: Floats, v: float) -> tuple[float, float]:
+    """Return the least and the greatest u of a capsule at some v, the least greater where it is not there.
+
+    A disc about the point at s = v - y of the axis reaches u = x -+ sqrt(rho^2 - s^2). With k = dx / dy of the axis both
+    ends are convex in s, extreme where s = +- rho k / sqrt(1 + k^2), or at the end of the axis before.
+    """
+    rho = capsule[4]
+    if rho == np.inf:
+        return -np.inf, np.inf
+    dx, dy = capsule[2] - capsule[0], capsule[3] - capsule[1]
+    begin = v - capsule[1]
+    if abs(dy) < EDGE:
+        if abs(begin) > rho:
+            return np.inf, -np.inf
+        half = math.sqrt(rho * rho - begin * begin) + EDGE
+        return min(capsule[0], capsule[2]) - half, max(capsule[0], capsule[2]) + half
+    first, last = max(min(begin, begin - dy), -rho), min(max(begin, begin - dy), rho)
+    if first > last:
+        return np.inf, -np.inf
+    k = dx / dy
+    extreme = rho * k / math.sqrt(1.0 + k * k)
+    a, b = min(max(extreme, first), last), min(max(-extreme, first), last)
+    return (
+        capsule[0] + (begin - a) * k - math.sqrt(rho * rho - a * a) - EDGE,
+        capsule[0] + (begin - b) * k + math.sqrt(rho * rho - b * b) + EDGE,
+    )
 
 
 @njit(cache=True, nogil=True)
@@ -974,7 +1027,7 @@ def tridexel_cut_tile(
     Returns whether all is done: when rays have no room for one more interval, `resume` says where
     to continue. Tiles are independent, so the result doesn't depend on how many run at a time.
     """
-    ray, box, corner = np.zeros(RAY_COLUMNS), np.empty(6), np.empty(2)
+    ray, box, capsule, corner = np.zeros(RAY_COLUMNS), np.empty(6), np.empty(5), np.empty(2)
     ray[SMALLER] = SHRINK
     # Range of w that holds the tile's material: what lies outside of it is skipped.
     bottom, top = np.inf, -np.inf
@@ -1045,10 +1098,16 @@ def tridexel_cut_tile(
                         continue
                     first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
                     limit = _flute_limit(piece, p, p1)
-                    i0, i1 = _cell_range(box[0], box[3], origin[0], pitch, 0, columns)
+                    _swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
                     j0, j1 = _cell_range(box[1], box[4], origin[1], pitch, row, end_row)
                     for j in range(max(j0, resume[3]) if resumes else j0, j1):
                         v = origin[1] + (j + 0.5) * pitch
+                        least, most = _capsule_row(capsule, v)
+                        if least > most:
+                            continue
+                        i0, i1 = _cell_range(
+                            max(box[0], least), min(box[3], most), origin[0], pitch, 0, columns
+                        )
                         for i in range(
                             max(i0, resume[4]) if resumes and j == resume[3] else i0, i1
                         ):
@@ -1105,10 +1164,16 @@ def tridexel_cut_tile(
                 if box[2] > top or box[5] < bottom:
                     continue
                 first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
-                i0, i1 = _cell_range(box[0], box[3], origin[0], pitch, 0, columns)
+                _swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
                 j0, j1 = _cell_range(box[1], box[4], origin[1], pitch, row, end_row)
                 for j in range(j0, j1):
                     v = origin[1] + (j + 0.5) * pitch
+                    least, most = _capsule_row(capsule, v)
+                    if least > most:
+                        continue
+                    i0, i1 = _cell_range(
+                        max(box[0], least), min(box[3], most), origin[0], pitch, 0, columns
+                    )
                     for i in range(i0, i1):
                         cell = j * columns + i
                         if _ray_misses(count, low, high, cell, box[2], box[5]):
