@@ -6,6 +6,7 @@ value of its nearest sample, and a sample outside the tolerance passes its value
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,8 @@ RANGE = 2.5
 EVEN = 1e-3
 """mm: a face whose samples differ by less has one colour anyway."""
 MOST_POINTS = 60
+MOST_TRIANGLES = 500_000
+"""Triangles that faces are divided into, about: more are no finer on a screen, and samples may lie in pairs, nearer than others are."""
 _ROUNDS = 14
 _APART = 1e5
 """mm added between two faces in a search for neighbours, so that none is found on another face."""
@@ -71,6 +74,7 @@ def _deviation_map(
     mesh: Mesh, deviation: Deviation, low: float, high: float, limit: float, progress: Progress
 ) -> DeviationMap:
     uneven, apart = uneven_faces(deviation, int(mesh.face.max(initial=0)))
+    apart = max(apart, _least_apart(mesh, uneven))
     points, triangles, face = divided(mesh, uneven, apart, progress)
     progress.check()
     value = values_at(points, triangles, face, deviation, low, high)
@@ -97,6 +101,14 @@ def uneven_faces(deviation: Deviation, last: int) -> tuple[Bools, float]:
     uneven = np.zeros(n, bool)
     uneven[count > 0] = (most - least)[count > 0] > EVEN
     return uneven, _spacing(deviation)
+
+
+def _least_apart(mesh: Mesh, uneven: Bools) -> float:
+    """Return how short edges (mm) may be so that the faces that are divided come as about `MOST_TRIANGLES`: halved edges make triangles of
+    about a quarter of their square."""
+    a, b, c = np.moveaxis(mesh.points[mesh.triangles[uneven[mesh.face]]], 1, 0)
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return math.sqrt(4.0 * area / MOST_TRIANGLES)
 
 
 def _spacing(deviation: Deviation) -> float:
