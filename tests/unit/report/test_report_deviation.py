@@ -134,3 +134,16 @@ def test_the_legend_of_the_picture_says_where_the_colours_begin_and_end(mesh):
 )
 def test_small_lengths_are_in_microns(value, words):
     assert fine_length(value) == words
+
+
+def test_samples_in_close_pairs_do_not_divide_a_face_without_end(mesh):
+    found = samples(gouge=[(30, 30)])
+    beside = found.point + [1e-3, 0.0, 0.0]
+    pairs = Deviation(
+        face=np.tile(found.face, 2),
+        point=np.vstack([found.point, beside]),
+        deviation=np.tile(found.deviation, 2),
+    )
+    shown = deviation_map(mesh, pairs, 0.02)
+    assert longest_edge(shown, 1) <= APART
+    assert len(shown.triangles) < 20 * len(pairs.face)
