@@ -9,8 +9,8 @@ from trunnion.geometry.development import Development
 
 CHORD = 8e-3
 """mm: how far an edge that is straight in space may be from its straight stand-in over the plane; more than bent faces' meshes are off."""
-HALVINGS = 8
-"""Times that triangles are cut in four: of an edge of 1 m pieces of 4 mm are left."""
+HALVINGS = 18
+"""Times that triangles are cut in two: of edges of 1 m pieces of 4 mm are left, as there are two long ones in each."""
 
 
 def developed_triangles(
@@ -33,7 +33,7 @@ def developed_triangles(
         turns.append(turn[~long])
         if not long.any():
             break
-        corners = _quartered(corners[long])
+        corners = _halved(corners[long], turn[long])
         flat, turn = _laid(corners, development)
     flat, turn = np.concatenate(done), np.concatenate(turns)
     found = [flat]
@@ -62,12 +62,13 @@ def _bends(turn: Floats, flat: Floats, development: Development) -> Bools:
     return np.asarray(radius * wide**2 / 8.0 > CHORD)
 
 
-def _quartered(corners: Floats) -> Floats:
-    a, b, c = np.moveaxis(corners, 1, 0)
-    ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
-    return np.concatenate(
-        [np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-    )
+def _halved(corners: Floats, turn: Floats) -> Floats:
+    """Return triangles cut in two at the middle of the edge that goes furthest about the axis: what goes along the axis bends nowhere."""
+    wide = np.abs(np.roll(turn, -1, axis=1) - turn)
+    first = (np.argmax(wide, axis=1)[:, None] + np.arange(3)) % 3
+    a, b, c = np.moveaxis(np.take_along_axis(corners, first[:, :, None], axis=1), 1, 0)
+    middle = 0.5 * (a + b)
+    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
 def _moved(flat: Floats, turn: Floats, again: Floats, development: Development) -> Floats:

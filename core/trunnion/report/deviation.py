@@ -1,12 +1,12 @@
 """The deviation map: how far every position of the finished part is from the part as drawn, as triangles with a value at each corner.
 
-The proof measures at samples. Faces on which they differ are divided until no edge is longer than the samples are apart; a corner has the
-value of its nearest sample, and a sample outside the tolerance passes its value to the corners around it, so that no gouge falls between.
+The proof measures at samples. Faces on which they differ are divided until no edge is longer than the samples there are apart; a corner has
+the value of its nearest sample, and a sample outside the tolerance passes its value to the corners around it, so that no gouge falls
+between.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,8 +21,6 @@ RANGE = 2.5
 EVEN = 1e-3
 """mm: a face whose samples differ by less has one colour anyway."""
 MOST_POINTS = 60
-MOST_TRIANGLES = 500_000
-"""Triangles that faces are divided into, about: more are no finer on a screen, and samples may lie in pairs, nearer than others are."""
 _ROUNDS = 14
 _APART = 1e5
 """mm added between two faces in a search for neighbours, so that none is found on another face."""
@@ -74,7 +72,7 @@ def _deviation_map(
     mesh: Mesh, deviation: Deviation, low: float, high: float, limit: float, progress: Progress
 ) -> DeviationMap:
     uneven, apart = uneven_faces(deviation, int(mesh.face.max(initial=0)))
-    apart = max(apart, _least_apart(mesh, uneven))
+    apart = np.maximum(apart, spacing_by_area(mesh, deviation, len(uneven)))
     points, triangles, face = divided(mesh, uneven, apart, progress)
     progress.check()
     value = values_at(points, triangles, face, deviation, low, high)
@@ -103,14 +101,6 @@ def uneven_faces(deviation: Deviation, last: int) -> tuple[Bools, float]:
     return uneven, _spacing(deviation)
 
 
-def _least_apart(mesh: Mesh, uneven: Bools) -> float:
-    """Return how short edges (mm) may be so that the faces that are divided come as about `MOST_TRIANGLES`: halved edges make triangles of
-    about a quarter of their square."""
-    a, b, c = np.moveaxis(mesh.points[mesh.triangles[uneven[mesh.face]]], 1, 0)
-    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    return math.sqrt(4.0 * area / MOST_TRIANGLES)
-
-
 def _spacing(deviation: Deviation) -> float:
     if len(deviation.face) < 2:
         return np.inf
@@ -121,10 +111,21 @@ def _spacing(deviation: Deviation) -> float:
     return float(np.quantile(np.asarray(near)[:, 1], 0.9))
 
 
+def spacing_by_area(mesh: Mesh, deviation: Deviation, n: int) -> Floats:
+    """Return by tag (n,) how far apart a face's samples are in mm if they are spread evenly over it: those on the facets of a round face
+    lie in rows of slivers, where the nearest one says nothing. 0 without samples."""
+    corners = np.asarray(mesh.points)[np.asarray(mesh.triangles)]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.bincount(mesh.face, 0.5 * np.linalg.norm(normal, axis=1), n)
+    count = np.bincount(deviation.face, minlength=n)[:n]
+    return np.sqrt(np.divide(area[:n], count, out=np.zeros(n), where=count > 0))
+
+
 def divided(
-    mesh: Mesh, uneven: Bools, apart: float, progress: Progress = NO_PROGRESS
+    mesh: Mesh, uneven: Bools, apart: Floats | float, progress: Progress = NO_PROGRESS
 ) -> tuple[Floats, Ints, Ints]:
-    """Return points, triangles and faces of a mesh whose chosen faces (by tag) have no edge longer than `apart` mm."""
+    """Return points, triangles and faces of a mesh whose chosen faces have no edge longer than `apart` mm; both are by tag."""
+    apart = np.broadcast_to(apart, uneven.shape)
     points, triangles, face = (
         np.asarray(mesh.points),
         np.asarray(mesh.triangles),
@@ -134,22 +135,24 @@ def divided(
     kept, kept_face = triangles[~fine], face[~fine]
     triangles, face = triangles[fine], face[fine]
     for _ in progress.each(range(_ROUNDS)):
-        points, triangles, face, is_done = _halved(points, triangles, face, apart)
+        points, triangles, face, is_done = _halved(points, triangles, face, apart[face])
         if is_done:
             break
     return points, np.concatenate([kept, triangles]), np.concatenate([kept_face, face])
 
 
 def _halved(
-    points: Floats, triangles: Ints, face: Ints, apart: float
+    points: Floats, triangles: Ints, face: Ints, apart: Floats
 ) -> tuple[Floats, Ints, Ints, bool]:
-    """Split every edge that is too long at its middle, once; both triangles beside an edge split it alike."""
+    """Split every edge that is too long for a triangle (t,) beside it at its middle, once; both triangles split it alike."""
     sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
     keys, inverse = np.unique(
         sides.reshape(-1, 2)[:, 0] * len(points) + sides.reshape(-1, 2)[:, 1], return_inverse=True
     )
     a, b = np.divmod(keys, len(points))
-    long = np.linalg.norm(points[a] - points[b], axis=1) > apart
+    allowed = np.full(len(keys), np.inf)
+    np.minimum.at(allowed, inverse.ravel(), np.repeat(apart, 3))
+    long = np.linalg.norm(points[a] - points[b], axis=1) > allowed
     if not long.any():
         return points, triangles, face, True
     middle = np.full(len(keys), -1)

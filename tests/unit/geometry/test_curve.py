@@ -213,6 +213,24 @@ def test_compiled_loops_give_what_the_plain_ones_give(seed):
     assert compiled.nearest_segment.py_func(points[:20], *rows)[0] == approx(away[:20], abs=1e-12)
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_nearest_of_many_segments_is_found_among_their_boxes(seed):
+    numbers = np.random.default_rng(seed)
+    curve = Curve(
+        np.cumsum(numbers.uniform(-2.0, 2.0, (600, 2)), axis=0).round(1),
+        numbers.choice([0.0, 0.0, 0.0, 0.2, -0.5, 1.0, -2.0], 600),
+        True,
+    )
+    s = curve.segments()
+    rows = (s.start, s.end, s.centre, s.radius, s.sweep)
+    low, high = s.start.min(axis=0), s.start.max(axis=0)
+    points = np.concatenate([numbers.uniform(low - 5.0, high + 5.0, (300, 2)).round(1), s.start])
+    away, nearest = plain.nearest_segment(points, *rows)
+    compiled_away, compiled_nearest = compiled.nearest_segment(points, *rows)
+    assert (compiled_away == away).all()
+    assert (compiled_nearest == nearest).all()
+
+
 def test_many_points_at_once_are_as_far_away_as_each_alone(monkeypatch):
     points = np.random.default_rng(4).uniform(-10.0, 30.0, (50, 2))
     alone = slot().distance(points)

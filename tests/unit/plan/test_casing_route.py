@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from subjects import own, part_of, until
+from trunnion.model.feature import Feature
+from trunnion.plan.casing.hole_route import way_out
 
 
 def routed():
@@ -52,3 +55,25 @@ def test_passes_on_the_bottom_lie_no_farther_apart_than_its_bend_allows():
 
 def test_what_must_come_turned_is_said():
     assert "route.turned" in {f.code for f in routed().process.findings}
+
+
+@pytest.mark.parametrize(
+    ("direction", "through", "out"),
+    [
+        # Recognition may give a through hole either way: it is drilled from outside.
+        ((-1.0, 0.0, 0.0), True, (1.0, 0.0, 0.0)),
+        ((1.0, 0.0, 0.0), True, (1.0, 0.0, 0.0)),
+        ((-0.8, 0.0, 0.6), True, (0.8, 0.0, -0.6)),
+        ((-1.0, 0.0, 0.0), False, (-1.0, 0.0, 0.0)),
+        ((0.0, 0.0, -1.0), True, (0.0, 0.0, -1.0)),
+    ],
+)
+def test_through_holes_are_left_away_from_the_axis(direction, through, out):
+    hole = Feature(
+        id="hole-01",
+        kind="hole",
+        faces=(),
+        sizes={"x": 90.0, "y": 3.0, "top_z": 20.0, "depth": 12.0, "diameter": 6.0},
+        attributes={"direction": direction, "through": through},
+    )
+    assert np.allclose(way_out(hole), out)

@@ -58,10 +58,17 @@ def overlapping_boxes(s: Segments) -> tuple[Ints, Ints]:
     """Return the pairs of segments, the smaller row first, whose boxes come within the coincidence tolerance."""
     low, high = segment_boxes(s)
     low = low - 2.0 * CLOSE
-    meet = (low[:, None, 0] <= high[None, :, 0]) & (low[None, :, 0] <= high[:, None, 0])
-    meet &= (low[:, None, 1] <= high[None, :, 1]) & (low[None, :, 1] <= high[:, None, 1])
-    i, j = np.nonzero(np.triu(meet, 1))
-    return i, j
+    # In the order of their left sides a box meets those that begin before it ends, and none before itself that it was not held against.
+    order = np.argsort(low[:, 0], kind="stable")
+    begin = np.arange(1, len(s) + 1)
+    count = np.searchsorted(low[order, 0], high[order, 0], side="right") - begin
+    one = np.repeat(np.arange(len(s)), count)
+    other = begin[one] + np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
+    one, other = order[one], order[other]
+    meet = (low[one, 1] <= high[other, 1]) & (low[other, 1] <= high[one, 1])
+    i, j = np.minimum(one, other)[meet], np.maximum(one, other)[meet]
+    rows = np.lexsort([j, i])
+    return i[rows], j[rows]
 
 
 def _off_carrier(s: Segments, rows: Ints, points: Floats) -> Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
@@ -24,10 +25,7 @@ def plan_area_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
         return EMPTY_REGION
     whole = corners[:, :, 2].min(axis=1) >= z
     pieces = np.concatenate(
-        [
-            np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])),
-            [shapely.convex_hull(shapely.MultiPoint(_above(c, z))) for c in corners[~whole]],
-        ]
+        [np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])), _cut_off(corners[~whole], z)]
     )
     # Each is grown by itself: then neighbours overlap, where they would only touch along an edge that is none the same.
     area = shapely.union_all(shapely.buffer(pieces, grown + LAP, quad_segs=1))
@@ -49,12 +47,21 @@ def region_of(area: shapely.Geometry) -> Region:
     return Region.of(curves)
 
 
-def _above(corners: Floats, z: float) -> Floats:
-    """Return the plan (k, 2) of what of a triangle (3, 3) is above a height."""
-    found = []
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if a[2] >= z:
-            found.append(a[:2])
-        if (a[2] >= z) != (b[2] >= z):
-            found.append(a[:2] + (z - a[2]) / (b[2] - a[2]) * (b - a)[:2])
-    return np.array(found).reshape(-1, 2)
+def _cut_off(corners: Floats, z: float) -> NDArray[np.object_]:
+    """Return the plan of what each of some triangles (t, 3, 3), which all cross a height, has above it."""
+    above = corners[:, :, 2] >= z
+    # Beginning with the corner that is alone on its side of the height: the two edges beside it cross it.
+    alone = np.where(above.sum(axis=1) == 1, np.argmax(above, axis=1), np.argmin(above, axis=1))
+    order = (alone[:, None] + np.arange(3)) % 3
+    first, second, third = np.moveaxis(np.take_along_axis(corners, order[:, :, None], axis=1), 1, 0)
+    upper = np.take_along_axis(above, alone[:, None], axis=1)[:, 0]
+
+    def crossing(other: Floats) -> Floats:
+        share = (z - first[:, 2]) / (other[:, 2] - first[:, 2])
+        return np.asarray(first + share[:, None] * (other - first))
+
+    one, two = crossing(second), crossing(third)
+    tips = np.stack([first, one, two], axis=1)[upper, :, :2]
+    rests = np.stack([one, second, third, two], axis=1)[~upper, :, :2]
+    found = [np.atleast_1d(shapely.polygons(p)) for p in (tips, rests) if len(p)]
+    return shapely.convex_hull(np.concatenate(found)) if found else np.empty(0, dtype=object)

@@ -7,13 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.findings import Refused, error, face_tags
+from trunnion.geometry.arrays import Floats
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.freeform.frames import Direction, cutting_setup
 from trunnion.plan.holes.drive import BORE, COUNTERBORE, COUNTERSINK, DRILL, not_reached
-from trunnion.plan.holes.hole import HoleShape, PlannedHole, hole_in
+from trunnion.plan.holes.hole import HoleShape, PlannedHole, hole_in, is_plain_through
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
 from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for, sinks_for
 from trunnion.plan.prismatic.regions import SetupSpace
@@ -89,13 +91,25 @@ def casing_holes(state: CasingPlanState) -> tuple[CasingHole, ...]:
 
 def _outward(state: CasingPlanState, feature: Feature) -> Direction:
     """Return the way out of a hole in the setup's frame; of a through hole along the axis the end that looks up."""
-    given = feature.attributes.get("direction", feature.sizes.get("direction"))
-    out = np.array(given if isinstance(given, tuple) else (0.0, 0.0, 1.0), dtype=np.float64)
-    world = state.recognition.frame.world_direction(out / np.linalg.norm(out))
+    world = state.recognition.frame.world_direction(way_out(feature))
     x, y, z = state.direction(world)
     if z < -1.0 + 10.0**-SAME_SIZE:
         return state.direction(-world)
     return (x, y, z)
+
+
+def way_out(feature: Feature) -> Floats:
+    """Return the unit direction (3,) in the casing's frame that a tool leaves a hole in: of a through hole that is as wide at both ends the
+    one away from the casing's axis, where nothing stands across from it."""
+    given = feature.attributes.get("direction", feature.sizes.get("direction"))
+    out = np.array(given if isinstance(given, tuple) else (0.0, 0.0, 1.0), dtype=np.float64)
+    out = out / np.linalg.norm(out)
+    if is_plain_through(feature):
+        x, y, depth = (float(feature.sizes.get(n, 0.0)) for n in ("x", "y", "depth"))  # type: ignore[arg-type]
+        middle = np.array([x, y]) - 0.5 * depth * out[:2]
+        if float(out[:2] @ middle) < -tolerance.SEW:
+            return -out
+    return out
 
 
 def plan_holes(state: CasingPlanState, stage: Stage, holes: Sequence[CasingHole]) -> None:
