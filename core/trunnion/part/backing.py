@@ -173,10 +173,11 @@ def _free_edges(shape: Shape) -> list[Shape]:
 
 def _check(part: Part, side: OpenSide, ground: _Ground, shape: Shape, volume: float) -> None:
     """Raise `BadInput` unless a backing is closed, valid, and as large as what stands over its plane."""
-    corners = side.frame().to_local(part.mesh().corners().reshape(-1, 3)).reshape(-1, 3, 3)
+    mesh = part.mesh(tolerance.CHORD)
+    corners = side.frame().to_local(mesh.corners().reshape(-1, 3)).reshape(-1, 3, 3)
     a, b, c = np.moveaxis(corners, 1, 0)
     plan = 0.5 * np.cross(b - a, c - a)[:, 2]
-    turned = np.isin(part.mesh().face, sorted(side.turned))
+    turned = np.isin(mesh.face, sorted(side.turned))
     over = (corners[:, :, 2].mean(axis=1) - ground.base) * np.where(turned, -plan, plan)
     expected = float(over.sum())
     if open_edges(shape) or not BRepCheck_Analyzer(shape).IsValid():
