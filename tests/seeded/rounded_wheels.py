@@ -15,7 +15,7 @@ import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
-from math import cos, degrees, hypot, pi, sin
+from math import cos, degrees, hypot, inf, pi, sin
 from pathlib import Path
 from typing import Any
 
@@ -340,16 +340,29 @@ def _roots(solid: cq.Shape) -> list[cq.Edge]:
 
 
 def _side(form: WheelForm) -> list[cq.Face]:
-    """Return the faces at which a period begins: along the middle of the channel, ruled from inside of bore and back to outside
-    of the shroud."""
-    low, high, corner = BEFORE, form.at_radius(1.1 * form.radius), 0.4
-    inner, top, bottom = 0.7 * form.bore, form.hub(low)[1], 2.0 * form.back
-    outer = form.hub(high)[0]
+    """Return the faces at which a period begins: along the middle of the channel, ruled as blades are, from inside of bore and back
+    to outside of the shroud."""
+    low, high = BEFORE, form.at_radius(1.1 * form.radius)
+    inner, bottom = 0.7 * form.bore, 2.0 * form.back
+
+    def down(s: float) -> tuple[float, float]:
+        """How far a blade's ruling goes on below the hub to the radius and the height at which faces end, in shares of its span."""
+        (r0, z0), (r1, z1) = form.hub(s), form.shroud(s)
+        return (
+            (r0 - inner) / (r1 - r0) if r1 > r0 else inf,
+            (z0 - bottom) / (z1 - z0) if z1 > z0 else inf,
+        )
+
+    first, last = low, high
+    for _ in range(60):
+        corner = 0.5 * (first + last)
+        to_radius, to_height = down(corner)
+        first, last = (corner, last) if to_radius < to_height else (first, corner)
 
     def inside(s: float) -> tuple[float, float]:
-        if s <= corner:
-            return inner, top + (bottom - top) * (s - low) / (corner - low)
-        return inner + (outer - inner) * (s - corner) / (high - corner), bottom
+        (r0, z0), (r1, z1) = form.hub(s), form.shroud(s)
+        span = min(down(s))
+        return r0 - span * (r1 - r0), z0 - span * (z1 - z0)
 
     def outside(s: float) -> tuple[float, float]:
         (r0, z0), (r1, z1) = form.hub(s), form.shroud(s)
