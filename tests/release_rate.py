@@ -1,6 +1,6 @@
 """How many of the random parts are released, at once and after repairs, and how much of their feed time is air.
 
-    python tests/release_rate.py panel leaning plate casing --seeds 0-19 [--jobs 2] [--set KEY=VALUE] [--json FILE] [--keep FOLDER]
+    python tests/release_rate.py panel leaning plate casing impeller --seeds 0-19 [--jobs 2] [--set KEY=VALUE] [--json FILE] [--keep FOLDER]
 
 Every part goes through the command line as a shop's part would. One line a part: verdict, coverage of what can be reached, share of air in
 the feed time, minutes at the machine, seconds it took, and the first line that says why it was rejected.
@@ -18,6 +18,7 @@ import time
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,8 @@ COMMAND = "from trunnion.cli.main import run; run()"
 LONGEST_S = 1800.0
 """A part that takes longer is given up."""
 RELEASED = ("passed", "passed with remarks")
+WORDS = {"impeller": ("setup.machine=Trunnion 650", "post.dialect=sinumerik")}
+"""Settings that a kind of parts needs; those of the caller come after them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,16 +105,24 @@ def outcomes(
 ) -> list[Outcome]:
     """Return what came of the parts of some kinds and seeds, each shown when it is done."""
     from seeded.casings import casing
+    from seeded.impellers import impeller
     from seeded.leaning_panels import leaning_panel
     from seeded.panels import panel
     from seeded.plates import plate
 
-    makers = {"panel": panel, "leaning": leaning_panel, "plate": plate, "casing": casing}
-    parts = [makers[kind](seed) for kind in kinds for seed in seeds]
-    files = [(p.name, p.written(folder)) for p in parts]
+    makers = {
+        "panel": panel,
+        "leaning": leaning_panel,
+        "plate": plate,
+        "casing": casing,
+        "impeller": partial(impeller, rounded=True),
+    }
+    parts = [(makers[kind](seed), WORDS.get(kind, ())) for kind in kinds for seed in seeds]
+    files = [(p.name, p.written(folder), own) for p, own in parts]
 
-    def one(named: tuple[str, Path]) -> Outcome:
-        outcome = programmed(*named, folder / named[0], words)
+    def one(named: tuple[str, Path, Sequence[str]]) -> Outcome:
+        name, file, own = named
+        outcome = programmed(name, file, folder / name, [*own, *words])
         print(outcome.line(), flush=True)
         return outcome
 
@@ -133,7 +144,9 @@ def summary(kind: str, found: Sequence[Outcome]) -> str:
 def main() -> None:
     """Measure, print, and write."""
     asked = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
-    asked.add_argument("kinds", nargs="+", choices=("panel", "leaning", "plate", "casing"))
+    asked.add_argument(
+        "kinds", nargs="+", choices=("panel", "leaning", "plate", "casing", "impeller")
+    )
     asked.add_argument("--seeds", default="0-19")
     asked.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     asked.add_argument("--set", action="append", default=[], dest="words")

@@ -1,21 +1,31 @@
 """Random impellers with truth by construction: counts, rows of splitters, wrap, thickness, bolt circles, and what files do to them.
 
 Blades are ruled from below the hub to above the shroud, cut off by the shroud's envelope and at the outlet radius, and stand on a turned
-hub in sharp roots: rounding these crashes the CAD kernel. What is random of a file: turned to a skew axis, mirrored, in inches, hub cut in
-sectors, walls in two pieces.
+hub: in sharp roots and with square noses, or with root fillets and round noses, as `rounded_wheels` makes them. What is random of a file:
+turned to a skew axis, mirrored, in inches, hub cut in sectors, walls in two pieces.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import cos, radians, sin
+from pathlib import Path
 from random import Random
 from typing import Any
 
 import cadquery as cq
 
+from seeded.rounded_wheels import WheelForm, rounded_wheel
+
+MOST_DRAWS = 10
+"""Draws of a seed until the kernel rounds all roots."""
+ROOM, NARROWEST = 3.0, 2.8
+"""Channels of wheels with root fillets are as wide as so many radii of these, and so many mm: the smallest cutter goes through."""
+TALLEST, TIGHTEST = 18.0, 1.12
+"""mm: height of blades, and radius of root fillets, that the smallest cutter reaches down and goes into."""
 STATIONS = 9
 """Points along a blade's curves."""
 BELOW, ABOVE = -0.35, 1.2
@@ -26,7 +36,7 @@ Meridian = Callable[[float], tuple[float, float]]
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeededImpeller:
     """A random wheel: its solid (OCP, mm), the unit of its file, and its truth: counts by kind, how many faces each wall has, the sense in
-    which it turns about the direction to its inlet, diameters of outlet and bore."""
+    which it turns about the direction to its inlet, diameters of outlet and bore, radius of the root fillets (0: sharp roots)."""
 
     name: str
     shape: Any
@@ -36,10 +46,118 @@ class SeededImpeller:
     turns: float
     outlet_diameter: float
     bore_diameter: float
+    fillet: float = 0.0
+
+    def written(self, folder: Path) -> Path:
+        """Return its STEP file in a folder."""
+        from trunnion.part.write import write_step
+
+        path = folder / f"{self.name}.step"
+        write_step(self.shape, path, unit=self.unit)
+        return path
 
 
-def impeller(seed: int) -> SeededImpeller:
-    """Return the random impeller of a seed."""
+def impeller(seed: int, *, rounded: bool = False) -> SeededImpeller:
+    """Return the random impeller of a seed; rounded ones have root fillets and the size of a hand."""
+    return _rounded(seed) if rounded else _sharp(seed)
+
+
+def _rounded(seed: int) -> SeededImpeller:
+    """Return the wheel with root fillets of a seed: the first of its draws that the kernel makes."""
+    for number in range(MOST_DRAWS):
+        draw = Random(f"rounded impeller {seed}, draw {number}")
+        form = _form(draw)
+        holes = draw.choice((0, form.count + draw.randint(1, 4)))
+        wheel = rounded_wheel(form)
+        if wheel is None:
+            continue
+        if holes:
+            wheel = wheel.cut(*_bolts(holes, 0.62 * form.radius, 0.03 * form.radius, form.back))
+        if len(wheel.Solids()) == 1 and wheel.isValid():
+            return _delivered(f"impeller{seed}", draw, wheel, form, holes)
+    raise ValueError(f"seed {seed}: {MOST_DRAWS} draws gave no valid solid")
+
+
+def _form(draw: Random) -> WheelForm:
+    """Return what a wheel with root fillets is made of: as many blades as leave room for these between them."""
+    radius = draw.uniform(30.0, 60.0)
+    height, outlet = radius * draw.uniform(0.55, 0.8), radius * draw.uniform(0.09, 0.14)
+    inner, eye = radius * draw.uniform(0.2, 0.26), radius * draw.uniform(0.5, 0.6)
+    eye = min(eye, inner + TALLEST)
+    rows = draw.choice((0, 1, 1, 2))
+    form = WheelForm(
+        radius=radius,
+        height=height,
+        back=-radius * draw.uniform(0.06, 0.1),
+        bore=inner * draw.uniform(0.35, 0.6),
+        hub_points=((inner, height), (inner * 1.05, 0.12 * height), (radius * 1.02, 0.0)),
+        shroud_points=(
+            (eye, height),
+            (eye * 1.04, outlet + 0.15 * height),
+            (radius * 1.02, outlet),
+        ),
+        starts=(
+            draw.uniform(0.08, 0.12),
+            *sorted(draw.uniform(0.3, 0.5) + 0.18 * k for k in range(rows)),
+        ),
+        count=draw.randint(5, 11),
+        wrap=radians(draw.uniform(25.0, 55.0)) * draw.choice((1.0, -1.0)),
+        thick=radius * draw.uniform(0.018, 0.026),
+        pieces=draw.choice((1, 1, 2)),
+        fillet=max(TIGHTEST, radius * draw.uniform(0.02, 0.035)),
+        joined=draw.random() < 0.5,
+    )
+    while form.least_room() < max(ROOM * form.fillet, NARROWEST):
+        fewer = form.starts[:-1] if form.count <= 5 and len(form.starts) > 1 else form.starts
+        form = replace(form, starts=fewer, count=max(form.count - 1, 4))
+    return form
+
+
+def _delivered(
+    name: str, draw: Random, wheel: cq.Shape, form: WheelForm, holes: int
+) -> SeededImpeller:
+    """Return a wheel with root fillets as its file comes, and its truth."""
+    wheel, mirrored = _laid(draw, wheel)
+    rows = len(form.starts) - 1
+    return SeededImpeller(
+        name=name,
+        shape=wheel.Solids()[0].wrapped,
+        unit=draw.choice(("mm", "mm", "inch")),
+        counts=_counts(form.count, rows, holes),
+        wall_faces=form.pieces,
+        turns=-math.copysign(1.0, form.wrap) * (-1.0 if mirrored else 1.0),
+        outlet_diameter=2.0 * form.radius,
+        bore_diameter=2.0 * form.bore,
+        fillet=form.fillet,
+    )
+
+
+def _laid(draw: Random, wheel: cq.Shape) -> tuple[cq.Shape, bool]:
+    """Return a wheel where a designer left it, and whether it is mirrored."""
+    mirrored = draw.random() < 0.5
+    if mirrored:
+        wheel = wheel.mirror("XZ")
+    axis = [draw.gauss(0.0, 1.0) for _ in range(3)]
+    if draw.random() < 0.7:
+        wheel = wheel.rotate(cq.Vector(), cq.Vector(*axis), draw.uniform(0.0, 360.0))
+        wheel = wheel.translate(cq.Vector(*(draw.uniform(-200.0, 200.0) for _ in range(3))))
+    return wheel, mirrored
+
+
+def _counts(blades: int, rows: int, holes: int) -> dict[str, int]:
+    counts = {
+        "blade": blades,
+        "splitter": blades * rows,
+        "hub": 1,
+        "bore": 1,
+        "plane": 2,
+        "profile": 1,
+        "hole": holes,
+    }
+    return {k: n for k, n in counts.items() if n}
+
+
+def _sharp(seed: int) -> SeededImpeller:
     draw = Random(f"impeller {seed}")
     radius = draw.uniform(30.0, 90.0)
     count, rows = draw.randint(5, 11), draw.choice((0, 1, 1, 2))
@@ -72,26 +190,12 @@ def impeller(seed: int) -> SeededImpeller:
         wheel = wheel.cut(*_bolts(holes, 0.62 * radius, 0.03 * radius, back))
     if len(wheel.Solids()) != 1 or not wheel.isValid():
         raise ValueError(f"seed {seed}: no valid solid")
-    mirrored = draw.random() < 0.5
-    if mirrored:
-        wheel = wheel.mirror("XZ")
-    axis = [draw.gauss(0.0, 1.0) for _ in range(3)]
-    if draw.random() < 0.7:
-        wheel = wheel.rotate(cq.Vector(), cq.Vector(*axis), draw.uniform(0.0, 360.0))
-        wheel = wheel.translate(cq.Vector(*(draw.uniform(-200.0, 200.0) for _ in range(3))))
-    counts = {
-        "blade": count,
-        "splitter": count * rows,
-        "hub": 1,
-        "bore": 1,
-        "plane": 2,
-        "profile": 1,
-    }
+    wheel, mirrored = _laid(draw, wheel)
     return SeededImpeller(
         name=f"impeller{seed}",
         shape=wheel.Solids()[0].wrapped,
         unit=draw.choice(("mm", "mm", "inch")),
-        counts={k: n for k, n in (counts | {"hole": holes}).items() if n},
+        counts=_counts(count, rows, holes),
         wall_faces=pieces,
         turns=-sense * (-1.0 if mirrored else 1.0),
         outlet_diameter=2.0 * radius,

@@ -25,6 +25,8 @@ from trunnion.recognize.impeller.settings import CLOCKWISE, ImpellerSettings
 PATIENT = ReadLimits(seconds=1000.0)
 QUICK = (1,)
 """Two rows of splitters, walls in two pieces, more bolt holes than blades."""
+QUICK_ROUNDED = (3,)
+"""No splitters, walls in two pieces, the lathe's faces in sectors."""
 
 
 def recognized(part: Part, **settings):
@@ -34,6 +36,12 @@ def recognized(part: Part, **settings):
 @cache
 def wheel(seed: int) -> tuple[SeededImpeller, Part]:
     made = impeller(seed)
+    return made, samples.read(made.shape, unit=made.unit)
+
+
+@cache
+def rounded_wheel(seed: int) -> tuple[SeededImpeller, Part]:
+    made = impeller(seed, rounded=True)
     return made, samples.read(made.shape, unit=made.unit)
 
 
@@ -69,6 +77,33 @@ def test_the_pressure_side_faces_the_way_of_turning(seed: int) -> None:
     for blade in found.of_kind("blade", "splitter"):
         assert (senses(part, found, blade, "pressure") * made.turns > 0.0).all()
         assert (senses(part, found, blade, "suction") * made.turns < 0.0).all()
+
+
+@pytest.mark.parametrize("seed", some(12, *QUICK_ROUNDED))
+def test_a_random_wheel_with_root_fillets_has_the_features_that_it_was_made_with(seed: int) -> None:
+    made, part = rounded_wheel(seed)
+    found = recognized(part)
+    assert found.counts() == made.counts
+    assert (found.unexplained, found.findings) == ((), ())
+    blades = found.of_kind("blade", "splitter")
+    for blade in blades:
+        roles = Counter(f.role for f in blade.faces)
+        assert roles.pop("pressure") == roles.pop("suction") == made.wall_faces
+        assert roles.pop("root_fillet") >= 3
+        assert set(roles) == {"leading_edge", "trailing_edge", "shroud"}
+        assert (senses(part, found, blade, "pressure") * made.turns > 0.0).all()
+    assert sum(bool(f.attributes.get("pair")) for f in blades) == 2
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(6))
+def test_the_radius_of_the_root_fillets_is_measured(seed: int) -> None:
+    made, part = rounded_wheel(seed)
+    table = size_table(recognized(part), part.graph(), part)
+    size = {s.name: s.value for s in table if s.feature == "part"}
+    assert size["root_fillet_radius"] == pytest.approx(made.fillet, abs=0.02)
+    assert size["outlet_diameter"] == pytest.approx(made.outlet_diameter, abs=0.02)
+    assert size["bore_diameter"] == pytest.approx(made.bore_diameter, abs=0.02)
 
 
 @pytest.mark.parametrize("seed", [1])
