@@ -71,8 +71,8 @@ def deviation_map(
 def _deviation_map(
     mesh: Mesh, deviation: Deviation, low: float, high: float, limit: float, progress: Progress
 ) -> DeviationMap:
-    uneven, apart = uneven_faces(deviation, int(mesh.face.max(initial=0)))
-    apart = np.maximum(apart, spacing_by_area(mesh, deviation, len(uneven)))
+    uneven, nearest = uneven_faces(deviation, int(mesh.face.max(initial=0)))
+    apart = np.maximum(nearest, spacing_by_area(mesh, deviation, len(uneven)))
     points, triangles, face = divided(mesh, uneven, apart, progress)
     progress.check()
     value = values_at(points, triangles, face, deviation, low, high)
