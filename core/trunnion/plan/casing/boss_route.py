@@ -17,7 +17,7 @@ from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.development.ground import SKIM, DevelopedGround
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
-from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
+from trunnion.plan.freeform.keys import ALLOWANCE, OVERHANG, SCALLOP
 from trunnion.plan.freeform.lands import (
     ABOVE_TOOL,
     AROUND_TOOL,
@@ -179,6 +179,7 @@ def _plan_sides(
     choices: dict[str, Value] = {
         SCALLOP: height,
         ALLOWANCE: 0.0,
+        OVERHANG: state.route.wall_allowance,
         **chord_choices(stage.strategy, height),
     }
     state.add(
@@ -280,6 +281,7 @@ def _plan_fillet(state: CasingPlanState, stage: Stage, boss: Feature) -> None:
         choices={
             SCALLOP: height,
             ALLOWANCE: 0.0,
+            OVERHANG: state.route.wall_allowance,
             f"{stage.strategy}.steepest": 89.0,
             **chord_choices(stage.strategy, height),
         },
