@@ -77,3 +77,9 @@ def test_through_holes_are_left_away_from_the_axis(direction, through, out):
         attributes={"direction": direction, "through": through},
     )
     assert np.allclose(way_out(hole), out)
+
+
+def test_what_is_left_on_faces_that_hang_over_is_what_roughing_leaves():
+    # Not twice the depth of cut, the boss's height: that would keep necks off flanges that lean over a boss by all of it.
+    sides = [o for o in routed().process.operations if o.strategy == "surface.waterline"]
+    assert sides and all(o.choices["surface.overhang"] == 0.5 for o in sides)

@@ -64,4 +64,4 @@ def _cut_off(corners: Floats, z: float) -> NDArray[np.object_]:
     tips = np.stack([first, one, two], axis=1)[upper, :, :2]
     rests = np.stack([one, second, third, two], axis=1)[~upper, :, :2]
     found = [np.asarray(shapely.polygons(p)) for p in (tips, rests) if len(p)]
-    return np.asarray(shapely.convex_hull(np.concatenate([np.empty(0, dtype=object), *found])))
+    return np.asarray(shapely.convex_hull(np.concatenate(found or [np.empty(0, dtype=object)])))

@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Finding, error, face_tags, warning
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
@@ -16,7 +17,7 @@ from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.development.ground import SKIM, DevelopedGround
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
-from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
+from trunnion.plan.freeform.keys import ALLOWANCE, OVERHANG, SCALLOP
 from trunnion.plan.freeform.lands import (
     ABOVE_TOOL,
     AROUND_TOOL,
@@ -48,6 +49,10 @@ WHOLE = 0.999
 """Share of a top that its end mill must cover."""
 LARGEST_SIDE = 12.0
 """mm: larger cutters are no better at sides that are a dozen mm high."""
+WAY = 0.05
+"""mm that the way round a boss on which a cutter is tried is off its outline, and wide."""
+ALL_ROUND = 0.98
+"""Share of the way round a boss from which on a cutter goes all round it."""
 CONCAVE = 0.9
 """Largest radius of a cutter over that of a hollow in a boss's outline."""
 
@@ -174,6 +179,7 @@ def _plan_sides(
     choices: dict[str, Value] = {
         SCALLOP: height,
         ALLOWANCE: 0.0,
+        OVERHANG: state.route.wall_allowance,
         **chord_choices(stage.strategy, height),
     }
     state.add(
@@ -211,12 +217,41 @@ def _side_cutter(
     mine = min(over, key=lambda r: -float(r.signed_distance(at[None])[0]), default=None)
     if mine is None:
         return None
-    others = [r for r in over if r is not mine]
+    lowest, highest = _box_of(state, boss, ground)
+    best, most = None, 0.0
     for tool in fits:
-        swept = mine.offset(tool.diameter)
-        if all(swept.intersect(r).area < tolerance.SEW for r in others):
+        beside = tool.diameter
+        near = Region.rectangle(*(lowest - beside).tolist(), *(highest + beside).tolist())
+        share = _share_round(state, ground, mine, near, tool)
+        if share >= ALL_ROUND:
             return tool
-    return fits[-1] if fits else None
+        if share > most + tolerance.COINCIDENT:
+            best, most = tool, share
+    return best or (fits[-1] if fits else None)
+
+
+def _box_of(
+    state: CasingPlanState, boss: Feature, ground: DevelopedGround
+) -> tuple[Floats, Floats]:
+    """Return the lowest and highest corner (2,) of a boss over the ground laid flat."""
+    corners = state.mesh.points[state.mesh.triangles[np.isin(state.mesh.face, boss.tags)]]
+    flat = ground.development.to_local(corners.reshape(-1, 3))[:, :2]
+    return flat.min(axis=0), flat.max(axis=0)
+
+
+def _share_round(
+    state: CasingPlanState, ground: DevelopedGround, mine: Region, near: Region, tool: Tool
+) -> float:
+    """Return the share of the way round a boss, near it, that a cutter can go, its tip on the bottom, beside all that stands there: with
+    its shank over the boss, and its holder beside flanges and neighbours."""
+    state.progress.check()
+    way = mine.offset(tool.radius + 2.0 * WAY).minus(mine.offset(tool.radius + WAY)).intersect(near)
+    if not way:
+        return 0.0
+    within = way.offset(tool.radius + WAY)
+    free = ground.free(0.0, tool, 0.0, state.route.reach_clearance, within)
+    open_way = free.offset(-tool.radius).intersect(way)
+    return open_way.area / way.area
 
 
 def _plan_fillet(state: CasingPlanState, stage: Stage, boss: Feature) -> None:
@@ -246,6 +281,7 @@ def _plan_fillet(state: CasingPlanState, stage: Stage, boss: Feature) -> None:
         choices={
             SCALLOP: height,
             ALLOWANCE: 0.0,
+            OVERHANG: state.route.wall_allowance,
             f"{stage.strategy}.steepest": 89.0,
             **chord_choices(stage.strategy, height),
         },

@@ -152,16 +152,31 @@ class DevelopedGround:
             self.band(a - LAP, b + LAP, 2.0 * AROUND) for a, b in inside if b > a - tolerance.SEW
         ]
 
-    def free(self, z: float, tool: Tool, around: float, above: float) -> Region:
+    def free(
+        self, z: float, tool: Tool, around: float, above: float, within: Region | None = None
+    ) -> Region:
         """Return the area that the envelope of a cutter may be in, its tip at a height: shank and holder keep `around` mm from the part
-        beside and `above` mm over it."""
-        obstacles = [self.over(z + SKIM)]
+        beside and `above` mm over it. Nothing outside `within` is looked at, nor anything in its way there (None: all the ground)."""
+        obstacles = [self._near(z + SKIM, within, 0.0)]
         for z0, r0, _, r1 in tool.profile():
             more = max(r0, r1) - tool.radius
             height = z + max(SKIM, STEP * math.floor((z0 - above) / STEP))
             if more > -around:
-                obstacles.append(self.over(height).offset(max(more + around, 0.0)))
-        return self.around().minus(union_all(obstacles))
+                grown = max(more + around, 0.0)
+                obstacles.append(self._near(height, within, grown).offset(grown))
+        area = self.around() if within is None else within
+        return area.minus(union_all(obstacles))
+
+    def _near(self, z: float, within: Region | None, beside: float) -> Region:
+        """Return what the part has over a height, of an area and some mm beside it alone where one is given."""
+        over = self.over(z)
+        if within is None or not over:
+            return over
+        low, high = within.box()
+        near = Region.rectangle(
+            low[0] - beside, low[1] - beside, high[0] + beside, high[1] + beside
+        )
+        return over.intersect(near)
 
 
 def sector(development: Development, low: float, high: float, half: float) -> Region:
