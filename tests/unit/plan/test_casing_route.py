@@ -9,7 +9,7 @@ import pytest
 
 from subjects import own, part_of, until
 from trunnion.model.feature import Feature
-from trunnion.plan.casing.hole_route import way_out
+from trunnion.plan.casing.hole_route import outward_direction
 
 
 def routed():
@@ -76,7 +76,7 @@ def test_through_holes_are_left_away_from_the_axis(direction, through, out):
         sizes={"x": 90.0, "y": 3.0, "top_z": 20.0, "depth": 12.0, "diameter": 6.0},
         attributes={"direction": direction, "through": through},
     )
-    assert np.allclose(way_out(hole), out)
+    assert np.allclose(outward_direction(hole), out)
 
 
 def test_what_is_left_on_faces_that_hang_over_is_what_roughing_leaves():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
-from leaning_paths import FORK, HEADER, TABLE, lean, path_of, program, standing
+from leaning_paths import FORK, HEAD_AND_TABLE, HEADER, TABLE, lean, path_of, program, standing
 from programs import BULL_10, FLAT_16, S1, program_1, section
 from random_programs import cycle
 from trunnion.findings import BadInput
@@ -169,6 +169,18 @@ def test_the_next_operation_goes_over_the_top_when_it_begins_in_another_directio
     lines = lines_of(program(first, second), {"S1": standing(TABLE)})
     k = [n for n, line in enumerate(lines) if line.startswith("CYCLE800(0")][1]
     assert lines[k - 3 : k] == ["CYCLE800()", "SUPA G0 Z0 D0", "D1"]
+
+
+def test_a_swivel_between_two_leans_goes_as_the_axes_of_the_machine_do():
+    # An even turn between two directions 98 degrees off z, 120 degrees apart, leans by up to 105.7: more than the head does.
+    paths = [
+        path_of(((0.0, 0.0, 300.0), lean(98.0, turned)), ((0.0, 0.0, 0.0), lean(98.0, turned)))
+        for turned in (0.0, 120.0)
+    ]
+    found = read_back(program(*paths), standing(HEAD_AND_TABLE))
+    axes = np.vstack([p.axis for p in found])
+    assert axes[:, 2].min() >= lean(98.0)[2] - 1e-6
+    assert np.linalg.norm(np.diff(axes, axis=0), axis=1).max() < 0.1
 
 
 @pytest.mark.parametrize("order", ["XYZ", "ZXZ"])

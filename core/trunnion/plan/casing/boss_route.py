@@ -250,8 +250,8 @@ def _share_round(
         return 0.0
     within = way.offset(tool.radius + WAY)
     free = ground.free(0.0, tool, 0.0, state.route.reach_clearance, within)
-    open_way = free.offset(-tool.radius).intersect(way)
-    return open_way.area / way.area
+    free_part = free.offset(-tool.radius).intersect(way)
+    return free_part.area / way.area
 
 
 def _plan_fillet(state: CasingPlanState, stage: Stage, boss: Feature) -> None:

@@ -91,14 +91,14 @@ def casing_holes(state: CasingPlanState) -> tuple[CasingHole, ...]:
 
 def _outward(state: CasingPlanState, feature: Feature) -> Direction:
     """Return the way out of a hole in the setup's frame; of a through hole along the axis the end that looks up."""
-    world = state.recognition.frame.world_direction(way_out(feature))
+    world = state.recognition.frame.world_direction(outward_direction(feature))
     x, y, z = state.direction(world)
     if z < -1.0 + 10.0**-SAME_SIZE:
         return state.direction(-world)
     return (x, y, z)
 
 
-def way_out(feature: Feature) -> Floats:
+def outward_direction(feature: Feature) -> Floats:
     """Return the unit direction (3,) in the casing's frame that a tool leaves a hole in: of a through hole that is as wide at both ends the
     one away from the casing's axis, where nothing stands across from it."""
     given = feature.attributes.get("direction", feature.sizes.get("direction"))

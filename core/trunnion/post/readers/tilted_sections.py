@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,8 @@ from trunnion.shop.rotary_angles import TURN
 
 SAME_DIRECTION = 1e-6
 """Two directions closer than this (their difference's length) differ by what angles and vectors are written to."""
+SWIVEL = math.radians(5.0)
+"""Largest turn of an axis in one block of a swivel."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,16 +74,46 @@ def angle_at(work_position: WorkPosition, axis: Floats) -> Floats:
     return np.asarray(least[int(np.argmax(within))])
 
 
+def swivelled(work_position: WorkPosition, first: Floats, last: Floats) -> Floats:
+    """Return the tool's directions (k, 3) between two while the rotary axes go straight from one to the other, in steps; none where an even
+    turn stays within their limits too.
+
+    Between two directions that lean alike an even turn leans more, which the machine never does.
+    """
+    angle = math.atan2(float(np.linalg.norm(np.cross(first, last))), float(first @ last))
+    share = np.linspace(0.0, 1.0, max(2, math.ceil(angle / SWIVEL)) + 1)[:, None]
+    even = (1.0 - share) * first + share * last
+    size = np.linalg.norm(even, axis=1, keepdims=True)
+    if (size < SAME_DIRECTION).any() or _holds(work_position, even / size):
+        return np.zeros((0, 3))
+    start, end = angle_at(work_position, first), angle_at(work_position, last)
+    low, high = work_position.limits
+    way = end - start
+    way = np.where(high - low >= TURN, np.remainder(way + math.pi, TURN) - math.pi, way)
+    count = max(2, math.ceil(float(np.abs(way).max()) / SWIVEL))
+    return axes_of(work_position, start + np.arange(1, count)[:, None] / count * way)
+
+
+def _holds(work_position: WorkPosition, axes: Floats) -> bool:
+    """Return whether a machine holds all of some tool axes (k, 3) within its limits."""
+    low, high = work_position.limits
+    both = rotary_solutions(work_position.machine, axes)[0]
+    least = low + np.mod(both - low + SLACK, TURN) - SLACK
+    return bool(np.all(np.any(np.all(least <= high + SLACK, axis=2), axis=1)))
+
+
 class TiltedSections(Sections):
     """Sections whose points are given in the plane in force: x, y, z there and the tool's direction.
 
     `matrix` (3, 3) has the plane's axes in the setup frame as columns, `level` says that it is the setup's own, `known` that the rotary
     axes stand as the plane wants it; `follows` that the control follows the tip, in the setup's own plane. `axis` (3,) is the tool's
-    direction in the setup frame, None while it is not known.
+    direction in the setup frame, None while it is not known; `_left` the one in which it was taken out of sight.
     """
 
     def __init__(self, poses: TipPoses) -> None:
         super().__init__(poses)
+        self.poses = poses
+        self._left: Floats | None = None
         self.matrix = np.eye(3)
         self.known = self.follows = False
         self.level = True
@@ -138,8 +171,15 @@ class TiltedSections(Sections):
         self.axis = None if angle is None else axes_of(work_position, angle[None])[0]
 
     def rapid(self, line: int, point: Point, tool: AnyTool, state: CuttingState) -> None:
-        """Add a rapid to a point of the plane."""
-        super().rapid(line, self._in_setup(point), tool, state)
+        """Add a rapid to a point of the plane; where the tool was turned out of sight, with the way of the machine's axes before it where
+        that is no even turn."""
+        goal = self._in_setup(point)
+        if self.at is None and self._left is not None:
+            for axis in swivelled(self.poses.work_position, self._left, np.array(goal[3:])):
+                between = (*goal[:3], *axis.tolist())
+                super().rapid(line, self.poses.above(between, tool) or between, tool, state)
+        self._left = None
+        super().rapid(line, goal, tool, state)
         self._reached(point)
 
     def feed(
@@ -162,13 +202,14 @@ class TiltedSections(Sections):
         if self.at is not None:
             if (up := self.interpreter.above(self.at, tool)) is not None:
                 super().rapid(line, up, tool, state)
+            self._left = np.array(self.at[3:])
             self.at = None
         self._local = None
 
     def change_tool(self) -> None:
         """End the section; see `Sections`."""
         super().change_tool()
-        self._local = None
+        self._local = self._left = None
 
     def _in_setup(self, point: Point) -> Point:
         if self.level:
