@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wheels
+from trunnion.plan.channel.blade_channel import begins_of
 from trunnion.plan.channel.meridian import MeridianSpline, cylindrical, in_space
 from trunnion.toolpath.contact_passes.channel_lines import (
     CLEARANCE,
@@ -84,6 +87,35 @@ def test_places_off_the_walls_are_as_far_off_them_as_was_wanted():
     away = np.linalg.norm(at[10:-10, None] - wall[None], axis=2).min(axis=1)
     assert away.min() == pytest.approx(off + CLEARANCE, abs=0.06)
     assert away.max() == pytest.approx(off + CLEARANCE, abs=0.06)
+
+
+def test_before_a_splitter_lines_come_up_to_its_camber_and_go_round_its_nose():
+    whole, off, begin = wheels.channel(count=14), 4.0, 0.4
+    splitter = replace(whole.upper, begins=np.array([[0.0, begin], [1.0, begin]]))
+    channel = replace(whole, upper=splitter)
+    u = np.linspace(-0.2, 1.0, 481)
+    w = np.full_like(u, 0.5)
+    low, high = between_walls(channel, u, w, off)
+    same = between_walls(whole, u, w, off)
+    run = channel.meridian.hub.run
+    reach = 2.5 * (off + CLEARANCE + wheels.HALF_THICK * 40.0)
+    assert high[u < begin - reach / run] == pytest.approx(1.0)
+    assert high[u >= begin] == pytest.approx(same[1][u >= begin], abs=1e-2)
+    assert low == pytest.approx(same[0])
+    nose = in_space(
+        channel.meridian.at(np.array([begin]), w[:1]), splitter.at(np.array([begin]), w[:1])
+    )
+    mine = (u > 0.0) & (u < begin)
+    away = np.linalg.norm(channel.at(u, high, w)[mine] - nose, axis=1)
+    assert away.min() > off
+
+
+def test_a_camber_tells_where_its_walls_begin():
+    nodes, w = np.linspace(-0.25, 1.25, 61), np.linspace(0.0, 1.0, 9)
+    seen = np.where((nodes > 0.4)[:, None] & (w > 0.1), 1.0, np.nan)
+    rows = begins_of([seen, seen], nodes, w)
+    assert rows[:, 0] == pytest.approx(w[1:])
+    assert rows[:, 1] == pytest.approx(nodes[nodes <= 0.4].max())
 
 
 @pytest.mark.parametrize("stepover", (0.4, 1.5, 6.0))

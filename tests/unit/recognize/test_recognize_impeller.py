@@ -25,8 +25,8 @@ from trunnion.recognize.impeller.settings import CLOCKWISE, ImpellerSettings
 PATIENT = ReadLimits(seconds=1000.0)
 QUICK = (1,)
 """Two rows of splitters, walls in two pieces, more bolt holes than blades."""
-QUICK_ROUNDED = (3,)
-"""No splitters, walls in two pieces, the lathe's faces in sectors."""
+QUICK_ROUNDED = (3, 4)
+"""Walls in two pieces and the lathe's faces in sectors; splitters whose round leading edges are raked far back."""
 
 
 def recognized(part: Part, **settings):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator, RegularGridInterpolator
@@ -39,6 +39,12 @@ class Camber:
     angle: RegularGridInterpolator
     sides: tuple[RegularGridInterpolator, RegularGridInterpolator]
     toes: tuple[Floats, Floats]
+    begins: Floats = field(default_factory=lambda: NO_TOE)
+
+    def begin(self, w: Floats) -> Floats:
+        """Return the u (k,) at which the walls begin at coordinates w (k,): behind 0 on splitters."""
+        rows = self.begins
+        return np.interp(w, rows[:, 0], rows[:, 1]) if len(rows) else np.zeros_like(w)
 
     def at(self, u: Floats, w: Floats) -> Floats:
         """Return the angle (k,) rad at coordinates u and w (k,)."""
@@ -69,7 +75,9 @@ class Camber:
             for net in (self.angle, *self.sides)
         ]
         toes = [rows + np.array([0.0, angle]) for rows in self.toes]
-        return Camber(angle=some[0], sides=(some[1], some[2]), toes=(toes[0], toes[1]))
+        return Camber(
+            angle=some[0], sides=(some[1], some[2]), toes=(toes[0], toes[1]), begins=self.begins
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -128,9 +136,15 @@ def camber_of(
     u = np.linspace(-U_BEYOND, 1.0 + U_BEYOND, U_NODES)
     w = np.linspace(0.0, 1.0, W_NODES)
     # The wall at smaller angles looks towards them.
-    sides = [_net(uw[s], angle[s], u, w) for s in (lean < -LEVEL, lean > LEVEL)]
+    seen = [_seen(uw[s], angle[s], u, w) for s in (lean < -LEVEL, lean > LEVEL)]
+    sides = [_net(places, u, w) for places in seen]
     nets = [RegularGridInterpolator((u, w), v) for v in (0.5 * (sides[0] + sides[1]), *sides)]
-    bare = Camber(angle=nets[0], sides=(nets[1], nets[2]), toes=(NO_TOE, NO_TOE))
+    bare = Camber(
+        angle=nets[0],
+        sides=(nets[1], nets[2]),
+        toes=(NO_TOE, NO_TOE),
+        begins=begins_of(seen, u, w),
+    )
     return replace(bare, toes=_toes(skin, feet, meridian, bare))
 
 
@@ -153,15 +167,27 @@ def _toes(
     return found[0], found[1]
 
 
-def _net(uw: Floats, angle: Floats, u: Floats, w: Floats) -> Floats:
-    """Return the angle at the nodes (nu, nw) of a net from scattered places (k, 2): straight on across the stream where walls end in
-    fillets, then along it where there is no blade."""
+def _seen(uw: Floats, angle: Floats, u: Floats, w: Floats) -> Floats:
+    """Return the angle at the nodes (nu, nw) of a net from scattered places (k, 2); no number where there is no wall."""
     rows = np.arange(0, len(uw), max(1, len(uw) // PLACES))
-    seen = LinearNDInterpolator(uw[rows], angle[rows])(
-        np.stack(np.meshgrid(u, w, indexing="ij"), axis=-1).reshape(-1, 2)
-    ).reshape(len(u), len(w))
+    nodes = np.stack(np.meshgrid(u, w, indexing="ij"), axis=-1).reshape(-1, 2)
+    seen = LinearNDInterpolator(uw[rows], angle[rows])(nodes)
+    return np.asarray(seen).reshape(len(u), len(w))
+
+
+def _net(seen: Floats, u: Floats, w: Floats) -> Floats:
+    """Return the angle at all nodes (nu, nw) of a net: straight on across the stream where walls end in fillets, then along it where there
+    is no blade."""
     across = np.stack([_carried_on(w, row, TAIL_W) for row in seen])
     return np.column_stack([_carried_on(u, row, TAIL_U) for row in across.T])
+
+
+def begins_of(seen: Sequence[Floats], u: Floats, w: Floats) -> Floats:
+    """Return rows (k, 2) of w and the node before the first u at which a wall is seen there, by the nets of both sides."""
+    known: Bools = np.asarray(np.isfinite(np.stack(seen)).any(axis=0))
+    some: Bools = np.asarray(known.any(axis=0))
+    first = np.maximum(known[:, some].argmax(axis=0) - 1, 0)
+    return np.column_stack([w[some], u[first]])
 
 
 def _carried_on(at: Floats, row: Floats, tail: int) -> Floats:

@@ -31,6 +31,9 @@ ONE_SENSE = 0.9
 WALL = 0.4
 """Area over that of the largest face of its sense from which on a face is a wall of its own, not half of a rounded edge."""
 
+RAKED = 3.0
+"""Slope up to which an edge that stands on the hub is raked back: some 70 degrees."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Blade:
@@ -84,8 +87,8 @@ def blades_of(
     for rows in _parts(graph, own & ~fillet):
         senses = {sense[r] for r in rows}
         (cores if {1, -1} <= senses else loose).append(rows)
-    blades = [_roles(graph, samples, hub, rows, sense) for rows in cores]
     beside = set(body.hub) | set(np.flatnonzero(fillet).tolist())
+    blades = [_roles(graph, samples, hub, rows, sense, beside) for rows in cores]
     blades = [b for b in blades if any(n in beside for r in b.core for n in graph.neighbours(r))]
     return _with_roots(graph, blades, fillet, loose)
 
@@ -125,6 +128,7 @@ def _roles(
     hub: HubMeridian,
     rows: tuple[int, ...],
     sense: dict[int, int],
+    roots: set[int],
 ) -> Blade:
     """Return the faces of a blade by role."""
     largest = {s: max(float(graph.area[r]) for r in rows if sense[r] == s) for s in (1, -1)}
@@ -133,7 +137,8 @@ def _roles(
     ends: dict[str, list[int]] = {SHROUD: [], LEADING_EDGE: [], TRAILING_EDGE: []}
     edges = [r for r in rows if not sense[r] or r in halves]
     for row in edges:
-        ends[_end(samples, hub, row)].append(row)
+        rooted = not roots.isdisjoint(graph.neighbours(row))
+        ends[_end(samples, hub, row, rooted=rooted)].append(row)
     for row in sorted(small - halves):
         if _rounds_tip(graph, row, ends[SHROUD]):
             ends[SHROUD].append(row)
@@ -168,13 +173,14 @@ def _rounds_tip(graph: FaceGraph, row: int, tip: list[int]) -> bool:
     return graph.bend[row] > 0 and bool(set(graph.neighbours(row, SMOOTH)) & set(tip))
 
 
-def _end(samples: CylindricalSamples, hub: HubMeridian, row: int) -> str:
-    """Return at which end of its blade a face without a sense lies, by where its normals look in the meridian."""
+def _end(samples: CylindricalSamples, hub: HubMeridian, row: int, *, rooted: bool) -> str:
+    """Return at which end of its blade a face without a sense lies, by where its normals look in the meridian: an edge that stands on the
+    hub or its fillets (`rooted`) may be raked so far back that they look more off the hub than along it."""
     mine = samples.of(row)
     normal = samples.normal[mine].mean(axis=0)[[0, 2]]
     along, up = hub.directions(samples.meridian[mine].mean(axis=0)[None])
     flow, span = float(normal @ along[0]), float(normal @ up[0])
-    if span > abs(flow):
+    if span > abs(flow) * (RAKED if rooted else 1.0):
         return SHROUD
     return TRAILING_EDGE if flow > 0.0 else LEADING_EDGE
 

@@ -19,6 +19,8 @@ SHORT = 3
 """Contacts that a line has at least."""
 STEP = 0.05
 """Share of the way from hub to shroud over which a wall's lean is taken."""
+LATE = 0.05
+"""Share of the stream from which on a blade that begins so far behind the others is a splitter."""
 CLEARANCE, TOE_CLEARANCE = 0.05, 0.03
 """mm more that lines stay off walls, and off toes: what nets and triangles may be off."""
 
@@ -73,21 +75,35 @@ def level_of(channel: BladeChannel, height: Callable[[Floats], Floats]) -> Surfa
 
 
 def between_walls(channel: BladeChannel, u: Floats, w: Floats, off: float) -> tuple[Floats, Floats]:
-    """Return the v (nu,), (nu,) that lie `off` mm off the walls of a channel at u and w (nu,); off the cambers before the leading edges."""
+    """Return the v (nu,), (nu,) that lie `off` mm off the walls of a channel at u and w (nu,); off the cambers before the leading edges.
+
+    Before a splitter the channel is open: lines come up to its camber, and go round its leading edge.
+    """
     low, high = channel.lower.at(u, w), channel.upper.at(u, w)
     radius = np.maximum(channel.meridian.at(u, w)[:, 0], 1e-3)
     tall = channel.meridian.height(np.clip(u, 0.0, 1.0))
     ends = []
     for camber, side, sign in ((channel.lower, 1, 1.0), (channel.upper, 0, -1.0)):
-        wall = np.where(u >= 0.0, camber.side(side, u, w), camber.at(u, w))
+        begin = camber.begin(w)
+        ahead = np.where(begin > LATE, (begin - u) * channel.meridian.hub.run, 0.0)
+        alone = (u < 0.0) | (ahead > 0.0)
+        middle, beside = camber.at(u, w), camber.side(side, u, w)
+        wall = np.where(alone, middle, beside)
         rz = channel.meridian.at(u, w)
         run = np.linalg.norm(np.gradient(rz, axis=0), axis=1)
-        along = radius * np.gradient(wall) / np.maximum(run, 1e-6)
+        turn = np.where(alone, np.gradient(middle), np.gradient(beside))
+        along = radius * turn / np.maximum(run, 1e-6)
         rise = camber.side(side, u, w + STEP) - camber.side(side, u, w - STEP)
         inside = np.clip(w + STEP, 0.0, 1.0) - np.clip(w - STEP, 0.0, 1.0)
         across = radius * rise / (inside * tall)
         # Across a wall that is swept and leans it is farther round the axis than square to the wall: by the length of its gradient.
-        ends.append(wall + sign * (off + CLEARANCE) * np.sqrt(1.0 + along**2 + across**2) / radius)
+        longer = np.sqrt(1.0 + along**2 + across**2)
+        # Square to a swept camber the nose is nearer than it is far along the camber.
+        size = off + CLEARANCE + radius * np.abs(beside - middle) / longer
+        nose = np.maximum(ahead * np.sqrt(1.0 + along**2) - np.abs(along) * size, 0.0)
+        beyond = np.sqrt(np.maximum(size**2 - nose**2, 0.0))
+        away = longer * np.where(ahead > 0.0, beyond, off + CLEARANCE)
+        ends.append(wall + sign * away / radius)
     span = high - low
     return (ends[0] - low) / span, (ends[1] - low) / span
 
