@@ -81,7 +81,7 @@ def milled(
         share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
         runs = [
             [
-                LocatedRun.of(contact_lines[k], run, tool, chord, allowance)
+                RunPoses.of(contact_lines[k], run, tool, chord, allowance)
                 for run in axes_of_lines[k].runs()
             ]
             for k in share.over(again, "Following flow lines with a leaning tool")
@@ -118,7 +118,7 @@ def milled(
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class LocatedRun:
+class RunPoses:
     """A run of axes along a contact pass, and the cutter on it: the `positions` (k,) of the poses along the contacts, and the poses."""
 
     contacts: Contacts
@@ -131,15 +131,15 @@ class LocatedRun:
     @staticmethod
     def of(
         contacts: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
-    ) -> LocatedRun:
+    ) -> RunPoses:
         """Return where a cutter is along a run, in blocks as long as the chord error (mm) and the chosen axes allow."""
-        chosen = run.position
-        stride = max(1, min(MOST_AXES, (len(chosen) - 1) // FEWEST_BLOCKS))
-        position = np.append(chosen[:-1:stride], chosen[-1])
-        made = LocatedRun.at(contacts, run, tool, allowance, position)
+        axis_positions = run.position
+        stride = max(1, min(MOST_AXES, (len(axis_positions) - 1) // FEWEST_BLOCKS))
+        position = np.append(axis_positions[:-1:stride], axis_positions[-1])
+        made = RunPoses.at(contacts, run, tool, allowance, position)
         radius = max(tool.corner_radius, 0.25 * tool.radius)
         travel = contacts.travel(radius)
-        inner = np.concatenate([np.arange(len(contacts), dtype=np.float64), chosen[1:-1]])
+        inner = np.concatenate([np.arange(len(contacts), dtype=np.float64), axis_positions[1:-1]])
         inner = inner[(inner > position[0]) & (inner < position[-1])]
         for _ in range(HALVINGS):
             worst = made._off(inner, travel, chord)
@@ -159,12 +159,12 @@ class LocatedRun:
     @staticmethod
     def at(
         contacts: Contacts, run: FreeAxes, tool: Tool, allowance: float, position: Floats
-    ) -> LocatedRun:
+    ) -> RunPoses:
         """Return the run with poses at positions (k,)."""
         point, normal = between(contacts.point, contacts.normal, contacts.feed, position)
         axis = run.at(position)
         tip = tip_at(tool, point + allowance * normal, normal, axis)
-        return LocatedRun(
+        return RunPoses(
             contacts=contacts,
             run=run,
             tool=tool,
@@ -173,12 +173,12 @@ class LocatedRun:
             poses=Pass(tip=tip, axis=axis, normal=normal),
         )
 
-    def with_positions(self, more: Floats) -> LocatedRun:
+    def with_positions(self, more: Floats) -> RunPoses:
         """Return the run with poses at more positions (m,)."""
         position = np.union1d(self.position, more)
-        return LocatedRun.at(self.contacts, self.run, self.tool, self.allowance, position)
+        return RunPoses.at(self.contacts, self.run, self.tool, self.allowance, position)
 
-    def chosen_within(self, blocks: Bools) -> Floats:
+    def axis_positions_within(self, blocks: Bools) -> Floats:
         """Return the positions (m,) of chosen axes within some of the blocks (k - 1,)."""
         block = np.searchsorted(self.position, self.run.position, side="right") - 1
         inside = (block < len(blocks)) & ~np.isin(self.run.position, self.position)
@@ -280,13 +280,13 @@ def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
 
 
 def _cut(
-    runs: Sequence[Sequence[LocatedRun]], query: ClearanceQuery | None
+    runs: Sequence[Sequence[RunPoses]], query: ClearanceQuery | None
 ) -> list[tuple[list[tuple[Floats, Pass]], Floats]]:
     """Return for the runs of each line the stretches whose moves are clear, and the positions where a move is not."""
     every = [run for some in runs for run in some]
     clear = _clear(every, query)
     # A long block that touches something is tried again from one chosen axis to the next: these poses are clear.
-    more = [run.chosen_within(~own) for run, own in zip(every, clear, strict=True)]
+    more = [run.axis_positions_within(~own) for run, own in zip(every, clear, strict=True)]
     again = [k for k, positions in enumerate(more) if len(positions)]
     for k in again:
         every[k] = every[k].with_positions(more[k])
@@ -304,7 +304,7 @@ def _cut(
     return found
 
 
-def _clear(runs: Sequence[LocatedRun], query: ClearanceQuery | None) -> list[Bools]:
+def _clear(runs: Sequence[RunPoses], query: ClearanceQuery | None) -> list[Bools]:
     """Return which blocks of runs are clear, asked for all together: a pass alone is too short a work for two cores."""
     if query is None or not runs:
         return [np.ones(len(run.position) - 1, bool) for run in runs]
