@@ -11,6 +11,7 @@ from milling import mill
 from trunnion.geometry.development import Development
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.mesh import Mesh
+from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Revolved
 from trunnion.plan.development.drives import layer_heights, ring_of, tangent_reach
 from trunnion.plan.development.ground import DevelopedGround, ground_of
@@ -96,6 +97,16 @@ def test_shank_and_holder_keep_from_what_is_high_beside_the_cutter() -> None:
     tool = mill(10.0)
     free = ground().free(0.0, tool, 1.0, 1.0)
     assert free.contains([[60.0, 30.0]])[0] and not free.contains([[0.0, 30.0]])[0]
+
+
+def test_what_is_free_within_an_area_is_what_is_free_of_it() -> None:
+    tool, whole = mill(8.0), ground()
+    for middle in ((0.0, 30.0), (14.0, 30.0), (0.0, 6.0)):
+        near = Region.rectangle(middle[0] - 9.0, middle[1] - 5.0, middle[0] + 9.0, middle[1] + 5.0)
+        free = whole.free(0.0, tool, 1.0, 1.0, near)
+        expected = whole.free(0.0, tool, 1.0, 1.0).intersect(near)
+        assert free.area == pytest.approx(expected.area, abs=1e-6)
+        assert free.minus(expected).area == pytest.approx(0.0, abs=1e-6)
 
 
 def test_layers_end_over_each_boss_with_its_allowance() -> None:
