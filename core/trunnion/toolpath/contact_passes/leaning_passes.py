@@ -119,7 +119,7 @@ def milled(
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class RunPoses:
-    """A run of axes along a contact pass, and the cutter on it: the `positions` (k,) of the poses along the contacts, and the poses."""
+    """A run of axes along a contact pass, and the cutter on it: the `position` (k,) of each of its poses along the contacts."""
 
     contacts: Contacts
     run: FreeAxes
