@@ -20,11 +20,7 @@ AREA = 1e-4
 """mm2: a plane piece smaller than this is noise of the topology step."""
 
 CHORD = 5e-3
-"""Chord error of meshes that stand for a part where nothing is finished: outlines of blanks, bottoms laid flat."""
-
-LOOKED_AT = 2e-4
-"""Chord error of meshes that are only looked at, as a share of the part's diagonal: a third of a pixel of it across a window. Free-form
-faces within `CHORD` come as a million triangles."""
+"""Chord error of meshes that are only looked at."""
 
 PICTURE = 0.05
 """Chord error of meshes in a report's pictures: a third of a pixel of a part of 200 mm, and drawn three times as fast as a finer one."""

@@ -173,11 +173,10 @@ def _free_edges(shape: Shape) -> list[Shape]:
 
 def _check(part: Part, side: OpenSide, ground: _Ground, shape: Shape, volume: float) -> None:
     """Raise `BadInput` unless a backing is closed, valid, and as large as what stands over its plane."""
-    mesh = part.mesh(tolerance.CHORD)
-    corners = side.frame().to_local(mesh.corners().reshape(-1, 3)).reshape(-1, 3, 3)
+    corners = side.frame().to_local(part.mesh().corners().reshape(-1, 3)).reshape(-1, 3, 3)
     a, b, c = np.moveaxis(corners, 1, 0)
     plan = 0.5 * np.cross(b - a, c - a)[:, 2]
-    turned = np.isin(mesh.face, sorted(side.turned))
+    turned = np.isin(part.mesh().face, sorted(side.turned))
     over = (corners[:, :, 2].mean(axis=1) - ground.base) * np.where(turned, -plan, plan)
     expected = float(over.sum())
     if open_edges(shape) or not BRepCheck_Analyzer(shape).IsValid():

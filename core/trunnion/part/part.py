@@ -170,12 +170,8 @@ class Part:
             self._graph = face_graph(self.shape, self._faces, self.n_faces, self._progress)
         return self._graph
 
-    def mesh(self, chord: float | None = None, angle: float = tolerance.MESH_ANGLE) -> Mesh:
-        """Return triangles of the solid within a chord error (mm; not given: fine enough to be looked at) and an angle between neighbouring
-        chords (radians)."""
-        if chord is None:
-            size = float(np.linalg.norm(self.high - self.low))
-            chord = max(tolerance.LOOKED_AT * size, tolerance.CHORD)
+    def mesh(self, chord: float = tolerance.CHORD, angle: float = tolerance.MESH_ANGLE) -> Mesh:
+        """Return triangles of the solid within a chord error (mm) and an angle between neighbouring chords (radians)."""
         if (chord, angle) not in self._meshes:
             from trunnion.part.shape.tessellate import tessellated
 

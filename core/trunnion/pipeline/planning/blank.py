@@ -54,13 +54,11 @@ def blank_of(session: Session, context: Context, frame: Frame, progress: Progres
         mesh = context.part.mesh()
         return make_envelope(frame, frame.to_local(mesh.points), mesh.triangles, material, settings)
     if kind == FINISH_TURNED:
-        skin = context.skin(tolerance.CHORD, progress)
-        points = frame.to_local(skin.points)
-        return make_finish_turned(frame, points, skin.triangles, skin.face, material)
+        mesh = context.part.mesh()
+        points = frame.to_local(mesh.points)
+        return make_finish_turned(frame, points, mesh.triangles, mesh.face, material)
     if kind == RING_TURNED:
-        return make_ring_turned(
-            frame, context.part.mesh(tolerance.CHORD), context.part.graph(), material
-        )
+        return make_ring_turned(frame, context.part.mesh(), context.part.graph(), material)
     if kind == CYLINDER:
         points = frame.to_local(context.part.mesh().points)
         return make_bar(frame, low, high, points, material, settings)
