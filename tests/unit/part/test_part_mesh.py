@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import samples
-from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import Frame
 from trunnion.part.build import box_blank
@@ -19,7 +18,7 @@ from trunnion.part.write import write_iges, write_step
 @pytest.mark.parametrize("suffix", ["step", "igs"])
 def test_a_mesh_encloses_the_volume_and_names_every_face(suffix: str) -> None:
     part = samples.read(samples.two_pockets_and_a_rib_shape(), suffix)
-    mesh = part.mesh(tolerance.CHORD)
+    mesh = part.mesh()
     a, b, c = np.moveaxis(mesh.corners(), 1, 0)
     assert (np.cross(a, b) * c).sum() / 6 == pytest.approx(part.volume, rel=1e-4)
     assert set(mesh.face.tolist()) == set(part.tags)

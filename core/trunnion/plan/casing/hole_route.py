@@ -15,7 +15,14 @@ from trunnion.model.tool import Tool
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.freeform.frames import Direction, cutting_setup
 from trunnion.plan.holes.drive import BORE, COUNTERBORE, COUNTERSINK, DRILL, not_reached
-from trunnion.plan.holes.hole import HoleShape, PlannedHole, hole_in, is_plain_through
+from trunnion.plan.holes.hole import (
+    HoleShape,
+    PlannedHole,
+    hole_direction,
+    hole_in,
+    hole_size,
+    is_plain_through,
+)
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
 from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for, sinks_for
 from trunnion.plan.prismatic.regions import SetupSpace
@@ -101,11 +108,9 @@ def _outward(state: CasingPlanState, feature: Feature) -> Direction:
 def outward_direction(feature: Feature) -> Floats:
     """Return the unit direction (3,) in the casing's frame that a tool leaves a hole in: of a through hole that is as wide at both ends the
     one away from the casing's axis, where nothing stands across from it."""
-    given = feature.attributes.get("direction", feature.sizes.get("direction"))
-    out = np.array(given if isinstance(given, tuple) else (0.0, 0.0, 1.0), dtype=np.float64)
-    out = out / np.linalg.norm(out)
+    out = hole_direction(feature)
     if is_plain_through(feature):
-        x, y, depth = (float(feature.sizes.get(n, 0.0)) for n in ("x", "y", "depth"))  # type: ignore[arg-type]
+        x, y, depth = (hole_size(feature, name) for name in ("x", "y", "depth"))
         middle = np.array([x, y]) - 0.5 * depth * out[:2]
         if float(out[:2] @ middle) < -tolerance.SEW:
             return -out

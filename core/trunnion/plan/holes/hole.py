@@ -106,14 +106,14 @@ def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
     missing = [name for name in NEEDED if not isinstance(_word(feature, name), (int, float))]
     if missing:
         raise Refused(f"{feature.id}: nothing says its {', '.join(missing)}; correct the feature")
-    x, y, top, diameter, depth = (_number(feature, name) for name in NEEDED)
+    x, y, top, diameter, depth = (hole_size(feature, name) for name in NEEDED)
     if diameter <= 0.0 or depth <= 0.0:
         raise Refused(f"{feature.id}: a hole's diameter and depth are above 0; correct the feature")
-    if _number(feature, "taper_angle") > 0.0:
+    if hole_size(feature, "taper_angle") > 0.0:
         raise Refused(
             f"{feature.id}: its side is tapered, which neither a drill nor an end mill makes"
         )
-    out = _direction(feature)
+    out = hole_direction(feature)
     mouth = np.array([x, y, top])
     ends = setup.to_local(frame.to_world(np.stack([mouth, mouth - depth * out])))
     up = float(setup.local_direction(frame.world_direction(out))[2])
@@ -174,7 +174,7 @@ def _counterbores(feature: Feature, bore: PlannedHole, end: str) -> tuple[Planne
             bottom=bore.top - depth,
             diameter=diameter,
             through=False,
-            point_angle=_number(feature, f"{end}shoulder_angle", FLAT),
+            point_angle=hole_size(feature, f"{end}shoulder_angle", FLAT),
             core=bore.diameter,
             faces=feature.with_role("counterbore_side", "counterbore_floor"),
         )
@@ -196,7 +196,7 @@ def _steps(feature: Feature, bore: PlannedHole, end: str) -> list[tuple[float, f
             steps.reverse()
     else:
         names = f"{end}counterbore_diameter", f"{end}counterbore_depth"
-        steps = [(_number(feature, names[0]), _number(feature, names[1]))]
+        steps = [(hole_size(feature, names[0]), hole_size(feature, names[1]))]
     found: list[tuple[float, float]] = []
     for diameter, depth in steps:
         if diameter <= bore.diameter + tolerance.SLIVER or depth <= 0.0:
@@ -206,16 +206,16 @@ def _steps(feature: Feature, bore: PlannedHole, end: str) -> list[tuple[float, f
 
 
 def _countersink(feature: Feature, end: str) -> Countersink | None:
-    diameter = _number(feature, f"{end}countersink_diameter", 0.0)
-    angle = _number(feature, f"{end}countersink_angle", 0.0)
+    diameter = hole_size(feature, f"{end}countersink_diameter", 0.0)
+    angle = hole_size(feature, f"{end}countersink_angle", 0.0)
     return Countersink(diameter=diameter, angle=angle) if diameter > 0.0 and angle > 0.0 else None
 
 
 def _point_angle(feature: Feature, radius: float) -> float:
     """Return the angle of the cone below a hole's full diameter; in a ball's cap that of the cone that fits into it."""
-    ball = _number(feature, "bottom_radius")
+    ball = hole_size(feature, "bottom_radius")
     if ball < radius - tolerance.SLIVER:
-        return _number(feature, "point_angle", FLAT)
+        return hole_size(feature, "point_angle", FLAT)
     height = ball - math.sqrt(max(ball**2 - radius**2, 0.0))
     return math.degrees(2.0 * math.atan2(radius, height))
 
@@ -223,7 +223,7 @@ def _point_angle(feature: Feature, radius: float) -> float:
 def is_wider_behind(feature: Feature) -> bool:
     """Return whether a hole has a counterbore or a countersink at its far end."""
     return any(
-        _number(feature, f"{BACK}{part}_diameter", 0.0) > 0.0
+        hole_size(feature, f"{BACK}{part}_diameter", 0.0) > 0.0
         for part in ("counterbore", "countersink")
     )
 
@@ -231,11 +231,11 @@ def is_wider_behind(feature: Feature) -> bool:
 def _is_stepped(feature: Feature) -> bool:
     """Return whether a hole has a wider part at its mouth."""
     return any(
-        _number(feature, f"{part}_diameter", 0.0) > 0.0 for part in ("counterbore", "countersink")
+        hole_size(feature, f"{part}_diameter", 0.0) > 0.0 for part in ("counterbore", "countersink")
     )
 
 
-def _direction(feature: Feature) -> Floats:
+def hole_direction(feature: Feature) -> Floats:
     """Return the way out of a hole, a unit vector in the recognition's frame."""
     given = _word(feature, "direction")
     if not isinstance(given, tuple) or len(given) != 3:
@@ -248,6 +248,7 @@ def _word(feature: Feature, name: str) -> object:
     return feature.sizes.get(name, feature.attributes.get(name))
 
 
-def _number(feature: Feature, name: str, default: float = 0.0) -> float:
+def hole_size(feature: Feature, name: str, default: float = 0.0) -> float:
+    """Return a size of a hole that is a number, or the default."""
     value = _word(feature, name)
     return float(value) if isinstance(value, (int, float)) else default
