@@ -14,6 +14,8 @@ from typing import Any
 import cadquery as cq
 import numpy as np
 
+LEAST_HOLE, HOLE_STEP = 3.0, 0.5
+"""mm: the smallest hole through a boss, and the step of holes' diameters: sizes that drills are sold in."""
 OUTLINES = ("circle", "rectangle", "slot", "triangle", "lobe")
 SIDES = {"circle": 1, "rectangle": 8, "slot": 4, "triangle": 6, "lobe": 6}
 """Side faces of a boss by its outline."""
@@ -263,7 +265,7 @@ def _row(draw: Random, shell: Shell, ground: tuple[float, float], most: int) -> 
             break
         cursor += turn
         z = draw.uniform(ground[0] + reach + 5.0 + fillet, ground[1] - reach - 5.0 - fillet)
-        hole = draw.choice((0.0, 0.35 * min(sizes[:2])))
+        hole = draw.choice((0.0, _drillable(0.35 * min(sizes[:2]))))
         found.append(
             MadeBoss(
                 outline=outline,
@@ -278,6 +280,10 @@ def _row(draw: Random, shell: Shell, ground: tuple[float, float], most: int) -> 
         )
         cursor += reach / shell.at(ground[0])
     return found
+
+
+def _drillable(diameter: float) -> float:
+    return max(HOLE_STEP * round(diameter / HOLE_STEP), LEAST_HOLE)
 
 
 def _sizes(draw: Random, outline: str, most: float) -> tuple[tuple[float, ...], float]:
