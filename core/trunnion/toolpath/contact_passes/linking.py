@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -130,7 +131,7 @@ class _Blocks:
         # A builder without a block: it answers how low the tip may go over the stock before the operation.
         self._air = PathBuilder(tool, data, stock, setup, parameters.safety)
         self._retreat = parameters.retreat
-        self._under = overhang_tops(drive.skin, tool, max(STOCK_SHARE * data.depth, LEAST_STOCK))
+        self._thickness = max(STOCK_SHARE * data.depth, LEAST_STOCK)
         self._tool, self._data, self._drive = tool, data, drive
         held = [
             drive.low,
@@ -148,8 +149,12 @@ class _Blocks:
 
     @property
     def axis(self) -> Floats:
-        """How the tool is_upright (3,)."""
+        """How the tool stands (3,)."""
         return self._parts[-1][1][-1]
+
+    @cached_property
+    def _overhang_top(self) -> Callable[[Floats], float]:
+        return overhang_tops(self._drive.skin, self._tool, self._thickness)
 
     def feed(self, tips: Floats, axis: Floats, mark: Mark) -> None:
         """Feed along tips (k, 3) with one axis (3,) or an axis each (k, 3)."""
@@ -205,7 +210,7 @@ class _Blocks:
     def _rise(self, height: float) -> None:
         """Feed up to a height at most as far as something hangs over beside the tool, or a wall stands beside it that it could not be led
         off: what was left there stands in its way."""
-        top = self._under(self.here)
+        top = self._overhang_top(self.here)
         if self._led_straight_up():
             top = max(top, self._air.stock().height(self.here, self.here, self._tool.radius))
         if top > self.here[2]:
@@ -393,6 +398,8 @@ def _links(
     rows = np.flatnonzero(near).tolist()
     chords = [np.array([passes[k].tip[-1], passes[k + 1].tip[0]]) for k in rows]
     upright = [bool(_is_upright(passes[k].axis[-1])) for k in rows]
+    if not any(upright):
+        return chords
     lowest = float(drive.low[2]) - tool.flute_length
     over = iter(
         follow(
@@ -452,13 +459,16 @@ def _leads(
     between = lead_out[:-1, -1:] + share * (lead_in[1:, :1] - lead_out[:-1, -1:])
     links = (lead_in, lead_out, between)
     flat = np.concatenate([w.reshape(-1, 3) for w in links])
-    floor = drive.skin.drop.drop(
-        flat[:, :2],
-        lower_side(tool, drive.allowance),
-        float(drive.low[2]) - tool.flute_length,
-        progress,
-    )
-    lift = np.maximum(floor + drive.allowance - flat[:, 2], 0.0)
+    lift = np.zeros(len(flat))
+    if upright.any():
+        # Leaning tools are never lifted, and a skin costs much to make ready for dropping.
+        floor = drive.skin.drop.drop(
+            flat[:, :2],
+            lower_side(tool, drive.allowance),
+            float(drive.low[2]) - tool.flute_length,
+            progress,
+        )
+        lift = np.maximum(floor + drive.allowance - flat[:, 2], 0.0)
     lifts = [
         x.reshape(w.shape[:2])
         for x, w in zip(
