@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 import samples
+from releases import assert_released
 from seeded.casings import short_ring, small_casing
-from trunnion import tolerance
-from trunnion.findings import Severity
 from trunnion.pipeline import Engine
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
@@ -19,8 +18,4 @@ def test_a_casing_is_released(part):
     engine = Engine()
     session = engine.open(samples.written(part(), name="casing"))
     session = engine.run(engine.with_choices(session, CHOICES))
-    verdict = session.verdict
-    errors = [str(f) for f in session.findings() if f.severity is Severity.ERROR]
-    assert verdict.releases, errors
-    assert (verdict.collisions, verdict.rapids_in_stock) == (0, 0)
-    assert verdict.gouge <= tolerance.GOUGE and verdict.coverage > 0.99
+    assert_released(session, coverage=0.99)

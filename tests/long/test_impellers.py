@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from releases import assert_released
 from seeded.impellers import impeller
-from trunnion import tolerance
-from trunnion.findings import Severity
 from trunnion.pipeline import Engine
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(3600)]
@@ -22,8 +21,4 @@ def test_a_random_impeller_with_root_fillets_is_released(seed, tmp_path):
     engine = Engine()
     session = engine.open(impeller(seed, rounded=True).written(tmp_path))
     session = engine.run(engine.with_choices(session, CHOICES))
-    verdict = session.verdict
-    errors = [str(f) for f in session.findings() if f.severity is Severity.ERROR]
-    assert verdict.releases, errors
-    assert (verdict.collisions, verdict.rapids_in_stock) == (0, 0)
-    assert verdict.gouge <= tolerance.GOUGE and verdict.coverage > 0.98
+    assert_released(session, coverage=0.98)

@@ -39,7 +39,7 @@ class Camber:
     angle: RegularGridInterpolator
     sides: tuple[RegularGridInterpolator, RegularGridInterpolator]
     toes: tuple[Floats, Floats]
-    begins: Floats = field(default_factory=lambda: NO_TOE)
+    begins: Floats = field(default_factory=lambda: np.zeros((0, 2)))
 
     def begin(self, w: Floats) -> Floats:
         """Return the u (k,) at which the walls begin at coordinates w (k,): behind 0 on splitters."""

@@ -112,7 +112,7 @@ class TiltedSections(Sections):
 
     def __init__(self, poses: TipPoses) -> None:
         super().__init__(poses)
-        self.poses = poses
+        self._work_position = poses.work_position
         self._left: Floats | None = None
         self.matrix = np.eye(3)
         self.known = self.follows = False
@@ -175,9 +175,9 @@ class TiltedSections(Sections):
         that is no even turn."""
         goal = self._in_setup(point)
         if self.at is None and self._left is not None:
-            for axis in swivelled(self.poses.work_position, self._left, np.array(goal[3:])):
+            for axis in swivelled(self._work_position, self._left, np.array(goal[3:])):
                 between = (*goal[:3], *axis.tolist())
-                super().rapid(line, self.poses.above(between, tool) or between, tool, state)
+                super().rapid(line, self.interpreter.above(between, tool) or between, tool, state)
         self._left = None
         super().rapid(line, goal, tool, state)
         self._reached(point)

@@ -19,8 +19,8 @@ from trunnion.settings import choose
 from trunnion.toolpath.contact_passes.axis_fields import fixed, leaning
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits, thickened
 from trunnion.toolpath.contact_passes.contacts import Contacts, slerp
-from trunnion.toolpath.contact_passes.leaning_passes import ASTRAY
 from trunnion.toolpath.contact_passes.passes import UPRIGHT
+from trunnion.toolpath.contact_passes.run_poses import ASTRAY
 from trunnion.toolpath.surface.point import PointSettings, field_of, grooving, milled, point
 
 CHORD = 0.0005
