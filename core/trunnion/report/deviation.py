@@ -1,6 +1,7 @@
 """The deviation map: how far every position of the finished part is from the part as drawn, as triangles with a value at each corner.
 
-The proof measures at samples. Faces on which they differ are divided until no edge is longer than the samples there are apart; a corner has
+The proof measures at samples. Faces on which they differ are divided until no edge is longer than the samples there are apart, or a few times
+that where it would take too many triangles; a corner has
 the value of its nearest sample, and a sample outside the tolerance passes its value to the corners around it, so that no gouge falls
 between.
 """
@@ -15,12 +16,15 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.verdict import Deviation
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.tolerance import COINCIDENT
 
 RANGE = 2.5
 """Where the colours end, in tolerances."""
 EVEN = 1e-3
 """mm: a face whose samples differ by less has one colour anyway."""
 MOST_POINTS = 60
+MOST_TRIANGLES = 1_000_000
+"""Of a map, about: more than a picture can show, or a window turn smoothly."""
 _ROUNDS = 14
 _APART = 1e5
 """mm added between two faces in a search for neighbours, so that none is found on another face."""
@@ -134,11 +138,33 @@ def divided(
     fine = uneven[face]
     kept, kept_face = triangles[~fine], face[~fine]
     triangles, face = triangles[fine], face[fine]
+    apart = apart * _coarser(points[triangles], apart[face])
     for _ in progress.each(range(_ROUNDS)):
         points, triangles, face, is_done = _halved(points, triangles, face, apart[face])
         if is_done:
             break
     return points, np.concatenate([kept, triangles]), np.concatenate([kept_face, face])
+
+
+def _coarser(corners: Floats, apart: Floats) -> float:
+    """Return how many times longer edges must be allowed than wanted (t,), that triangles with corners (t, 3, 3) become at most about
+    `MOST_TRIANGLES`: long slivers along a round face become hundreds each."""
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    height = np.linalg.norm(normal, axis=1) / np.maximum(longest, COINCIDENT)
+    times = 1.0
+    while (
+        float(_pieces(longest, times * apart) @ _pieces(height, times * apart)) > MOST_TRIANGLES
+        and (longest > times * apart).any()
+    ):
+        times *= 2.0
+    return times
+
+
+def _pieces(size: Floats, apart: Floats) -> Floats:
+    """Return in how many pieces at most (t,) lengths (t,) go by halving until none is longer than `apart` (t,)."""
+    share = np.maximum(size, apart) / np.maximum(apart, COINCIDENT)
+    return np.asarray(2.0 ** np.ceil(np.log2(share)))
 
 
 def _halved(

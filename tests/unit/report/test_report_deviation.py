@@ -7,7 +7,7 @@ import pytest
 
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.verdict import NO_DEVIATION, Deviation
-from trunnion.report.deviation import deviation_map
+from trunnion.report.deviation import MOST_TRIANGLES, deviation_map
 from trunnion.report.palette import load_palette
 from trunnion.report.pictures import deviation_legend, fine_length
 
@@ -147,3 +147,23 @@ def test_samples_in_close_pairs_do_not_divide_a_face_without_end(mesh):
     shown = deviation_map(mesh, pairs, 0.02)
     assert longest_edge(shown, 1) <= APART
     assert len(shown.triangles) < 20 * len(pairs.face)
+
+
+def test_slivers_along_a_round_face_do_not_become_millions_of_triangles():
+    n, height = 20_000, 400.0
+    turn = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
+    ring = 300.0 * np.column_stack([np.cos(turn), np.sin(turn)])
+    points = np.vstack([np.column_stack([ring, np.full(n, z)]) for z in (0.0, height)])
+    low, after = np.arange(n), np.roll(np.arange(n), -1)
+    triangles = np.concatenate(
+        [np.column_stack([low, after, low + n]), np.column_stack([after, after + n, low + n])]
+    )
+    around, up = (a.ravel() for a in np.meshgrid(turn[:: n // 300], np.arange(2.0, height, 4.0)))
+    found = Deviation(
+        face=np.ones(len(up), np.int64),
+        point=np.column_stack([300.0 * np.cos(around), 300.0 * np.sin(around), up]),
+        deviation=np.where(np.arange(len(up)) == 0, -0.05, 0.0),
+    )
+    shown = deviation_map(Mesh(points, triangles, np.ones(2 * n, np.int64)), found, 0.02)
+    assert 2 * n < len(shown.triangles) < 3 * MOST_TRIANGLES
+    assert (shown.value == -0.05).any()
