@@ -6,7 +6,7 @@ which on a round face leaves it by less than the sixth power of the turn.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -27,6 +27,8 @@ class Contacts:
     point: Floats
     normal: Floats
     closed: bool = False
+    _feed: list[Floats] = field(init=False, repr=False, default_factory=list)
+    _travel: dict[float, Floats] = field(init=False, repr=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "point", floats(self.point, (None, 3), "contact points"))
@@ -39,7 +41,12 @@ class Contacts:
 
     @property
     def feed(self) -> Floats:
-        """The unit direction of the path at each contact (k, 3), along the face."""
+        """The unit direction of the path at each contact (k, 3), along the face; found once, as every run of a pass asks for it."""
+        if not self._feed:
+            self._feed.append(self._directions())
+        return self._feed[0]
+
+    def _directions(self) -> Floats:
         step = np.diff(self.point, axis=0)
         size = np.linalg.norm(step, axis=1, keepdims=True)
         direction = _scaled(step)
@@ -60,8 +67,11 @@ class Contacts:
 
     def travel(self, radius: float) -> Floats:
         """Return how far (k,) mm a point `radius` above the face has come at each contact: what a cutter of that radius travels."""
-        offset = self.point + radius * self.normal
-        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(offset, axis=0), axis=1))])
+        if radius not in self._travel:
+            offset = self.point + radius * self.normal
+            run = np.cumsum(np.linalg.norm(np.diff(offset, axis=0), axis=1))
+            self._travel[radius] = np.concatenate([[0.0], run])
+        return self._travel[radius]
 
     def of(self, rows: Bools | slice) -> Contacts:
         """Return a part of the pass; it is not closed."""
@@ -89,6 +99,12 @@ def between(point: Floats, normal: Floats, feed: Floats, position: Floats) -> tu
         + length * (start * u * (1.0 - u) ** 2 - end * u * u * (1.0 - u))
     )
     return found, _scaled((1.0 - u) * normal[row] + u * normal[row + 1])
+
+
+def value_at(values: Floats, position: Floats) -> Floats:
+    """Return what grows evenly between values (n,) at positions (k,), as `between` counts them."""
+    row = np.clip(position.astype(np.int64), 0, len(values) - 2)
+    return np.asarray(values[row] + (position - row) * (values[row + 1] - values[row]))
 
 
 def axis_between(axis: Floats, position: Floats) -> Floats:

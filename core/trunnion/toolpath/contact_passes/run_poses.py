@@ -13,7 +13,7 @@ from trunnion.geometry.sphere import angle_between
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.toolpath.contact_passes.axis_search import FreeAxes
-from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp
+from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp, value_at
 from trunnion.toolpath.contact_passes.passes import Pass
 
 SHARES = (0.25, 0.5, 0.75)
@@ -48,7 +48,8 @@ class RunPoses:
         made = RunPoses.at(contacts, run, tool, allowance, position)
         radius = max(tool.corner_radius, 0.25 * tool.radius)
         travel = contacts.travel(radius)
-        inner = np.concatenate([np.arange(len(contacts), dtype=np.float64), axis_positions[1:-1]])
+        inside = np.arange(math.floor(position[0]), math.ceil(position[-1]), dtype=np.float64)
+        inner = np.concatenate([inside, axis_positions[1:-1]])
         inner = inner[(inner > position[0]) & (inner < position[-1])]
         for _ in range(HALVINGS):
             worst = made._off(inner, travel, chord)
@@ -103,8 +104,7 @@ class RunPoses:
         share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
         probe = np.concatenate([inner, share])
         block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
-        gone = np.interp(probe, np.arange(len(travel)), travel)
-        ends = np.interp(position, np.arange(len(travel)), travel)
+        gone, ends = value_at(travel, probe), value_at(travel, position)
         part = np.clip(
             (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
             0.0,
