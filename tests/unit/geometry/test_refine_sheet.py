@@ -164,13 +164,16 @@ def test_long_slivers_become_even_triangles_and_no_point_leaves_the_face() -> No
     # Strips 0.02 mm wide along a cylinder, as a mesh within half a micron has them beside a small fillet.
     sheet = sheet_of(cylinder(radius=2.0, length=40.0, angle=0.6, n=121), (1,))
     plainly, evenly = split_finely(sheet, in_mm, 0.2), split_finely(sheet, in_mm, 0.2, evenly=True)
-    assert len(evenly.triangles) < 0.5 * len(plainly.triangles)
+    # Some times as many as even triangles with sides of 0.2 mm would be: rims keep their points, and halving leaves shorter edges.
+    even = plainly.area().sum() / (0.25 * math.sqrt(3.0) * 0.2**2)
+    assert len(evenly.triangles) < min(6.0 * even, 0.5 * len(plainly.triangles))
     ends = evenly.edges()[0]
     length = np.linalg.norm(np.diff(evenly.points[ends], axis=1)[:, 0], axis=1)
     assert np.quantile(length, 0.999) <= 0.2 * 1.05
     assert np.median(length) > SHORT * 0.2
+    # Chords of a length c on a radius r leave (c / r)^2 / 24 of the area out.
     area = evenly.area().sum()
-    assert area == pytest.approx(plainly.area().sum(), rel=1e-4)
+    assert area == pytest.approx(plainly.area().sum(), rel=(0.2 / 2.0) ** 2 / 24.0)
     from_axis = np.hypot(evenly.points[:, 1], evenly.points[:, 2])
     assert from_axis == pytest.approx(np.full(len(from_axis), 2.0), abs=2e-5)
 

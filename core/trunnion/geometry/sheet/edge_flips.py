@@ -77,8 +77,9 @@ class _Net:
             np.maximum(total**2 - 2.0 * (square**2).sum(axis=1, keepdims=True), 1e-24 * total**2)
         )
         self.cotangent[changed] = (total - 2.0 * square) / four
-        around = np.unique(self.side[changed])
-        around = around[self.may_flip[around]]
+        touched = np.zeros(len(self.ends), dtype=bool)
+        touched[self.side[changed]] = True
+        around = np.flatnonzero(touched & self.may_flip)
         low, high = np.sort(self.half[around], axis=1).T
         self.lean[around] = self.cotangent.ravel()[low] + self.cotangent.ravel()[high]
 
@@ -135,7 +136,9 @@ class _Net:
         at = np.minimum(np.searchsorted(self.first_keys, old), len(self.first_keys) - 1)
         was_first = self.first_keys[at] == old
         self.gone[at[was_first]] = True
-        self.come = np.union1d(np.setdiff1d(self.come, old), self._keys(c, d))
+        # Both are in order: a stable sort merges them.
+        left = self.come[~_are_in(self.come, np.sort(old))]
+        self.come = np.sort(np.concatenate([left, np.sort(self._keys(c, d))]), kind="stable")
         self.ends[edges] = np.column_stack([np.minimum(c, d), np.maximum(c, d)])
 
     def _is_new(self, c: Ints, d: Ints) -> Bools:
@@ -145,7 +148,7 @@ class _Net:
         known = (self.first_keys[at] == keys) & ~self.gone[at]
         first = np.zeros(len(keys), dtype=bool)
         first[np.unique(keys, return_index=True)[1]] = True
-        return np.asarray(first & ~known & ~np.isin(keys, self.come))
+        return np.asarray(first & ~known & ~_are_in(keys, self.come))
 
     def _is_upright(self, triangles: Ints) -> Bools:
         """Return which triangles (k, 3) face, all but a little, as the faces do at their corners."""
@@ -153,6 +156,14 @@ class _Net:
         normal = unit(np.cross(b - a, c - a))
         facing = np.einsum("tk,tck->tc", normal, self.normals[triangles])
         return np.asarray((facing > SMOOTH).all(axis=1))
+
+
+def _are_in(keys: Ints, ordered: Ints) -> Bools:
+    """Return which keys (k,) are among others (n,) in ascending order."""
+    if not len(ordered):
+        return np.zeros(len(keys), dtype=bool)
+    at = np.minimum(np.searchsorted(ordered, keys), len(ordered) - 1)
+    return np.asarray(ordered[at] == keys)
 
 
 def _halves(side: Ints, count: int) -> Ints:

@@ -7,13 +7,14 @@ where lines come together, with higher powers its steps grow more even (the limi
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import dijkstra
-from scipy.sparse.linalg import factorized
+from scipy.sparse.linalg import splu
 
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels.shortest_paths import fast_marching_compiled as kernel
@@ -24,6 +25,8 @@ POWERS = (2.0, 3.0, 4.0, 4.0, 6.0, 6.0, 6.0)
 """Powers of the slope, one after the other: each begins where the one before ended."""
 BEYOND = 0.05
 """How far a blend may go past the values of its guides."""
+PIVOT = 0.01
+"""Share of a column's largest entry from which on its diagonal is taken as the pivot: rows keep their symmetric order."""
 FLATTEST = 1e-3
 """Slope, as a share of the middle one, below which a triangle's weight falls no further: a weight of nothing can't be solved for."""
 
@@ -113,7 +116,7 @@ def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = NO_PROGRES
         progress.at(turn / len(POWERS), "Laying flow lines")
         matrix = metric.stiffness(weight)[free]
         try:
-            solve = factorized(matrix[:, free].tocsc())
+            solve = _factorized(matrix[:, free])
         except RuntimeError:
             # Weights that ran away on folded triangles leave nothing to solve: the blend of less power is taken.
             if not turn:
@@ -128,6 +131,20 @@ def blend(metric: Metric, zero: Ints, one: Ints, progress: Progress = NO_PROGRES
         )
         even = field.copy() if _is_between(field) else even
     return np.asarray(np.clip(even, 0.0, 1.0))
+
+
+def _factorized(matrix: csr_matrix) -> Callable[[Floats], Floats]:
+    """Return what solves for a symmetric matrix: its LU factors, ordered for one (minimum degree of A + A^T), which fill up less.
+
+    Raises `RuntimeError` for a singular one.
+    """
+    solve: Callable[[Floats], Floats] = splu(
+        matrix.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=PIVOT,
+        options={"SymmetricMode": True},
+    ).solve
+    return solve
 
 
 def _is_between(field: Floats) -> bool:
@@ -154,7 +171,7 @@ def turns_about(metric: Metric, first: Ints, second: Ints) -> tuple[Floats, Ints
     np.add.at(push, sheet.triangles[:, [1, 2, 0]], -0.5 * cot * rise)
     field = np.zeros(len(sheet.points))
     rest = np.delete(np.arange(len(field)), cut[0])
-    field[rest] = factorized(matrix[rest][:, rest].tocsc())(push[rest])
+    field[rest] = _factorized(matrix[rest][:, rest])(push[rest])
     return field, turns
 
 
