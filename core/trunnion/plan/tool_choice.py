@@ -59,11 +59,13 @@ class ToolRequirement:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Candidates:
-    """The cutters that fit a requirement, largest first, or in words why none does."""
+    """The cutters that fit a requirement, largest first, or in words why none does; `hindered`: there are some, but what stands around
+    keeps them away."""
 
     tools: tuple[Tool, ...]
     reason: str = ""
     remedy: str = ""
+    hindered: bool = False
 
 
 def candidates(

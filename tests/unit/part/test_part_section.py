@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import cadquery as cq
 import numpy as np
@@ -12,6 +13,7 @@ import samples
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.part.shape.plane_intersection import Tracer
 
 BOTH = pytest.mark.parametrize("suffix", ["step", "igs"])
 TOP = 60 * 36 - (36 * 20 - (4 - math.pi) * 4**2)
@@ -147,3 +149,20 @@ def test_a_plane_that_leans_meets_circles_whose_farthest_points_lie_below_it() -
     leaning = Frame(np.zeros(3), np.array([0.0, 0.0, 1.0]), out)
     wide = 2.0 * math.sqrt(50.0**2 - 46.0**2)
     assert samples.read(disc).section(leaning, 46.0).area == pytest.approx(5.0 * wide, abs=1e-6)
+
+
+def test_a_curve_that_is_lost_from_one_end_is_found_from_the_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    part = samples.read(samples.oblique_cylinder_shape(), "igs")
+    whole = part.section(WORLD, 1.3)
+    followed, follow = [], Tracer.follow
+
+    def lost_at_first(tracer: Tracer, *way: Any) -> Any:
+        followed.append(way)
+        return None if len(followed) <= 2 else follow(tracer, *way)
+
+    monkeypatch.setattr(Tracer, "follow", lost_at_first)
+    again = part.section(WORLD, 1.3 + 1e-8)
+    assert len(followed) > 2
+    assert again.area == pytest.approx(whole.area, rel=1e-6)

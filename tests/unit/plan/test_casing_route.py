@@ -10,6 +10,7 @@ import pytest
 from subjects import own, part_of, until
 from trunnion.model.feature import Feature
 from trunnion.plan.casing.hole_route import outward_direction
+from trunnion.plan.tool_choice import Candidates
 
 
 def routed():
@@ -83,3 +84,18 @@ def test_what_is_left_on_faces_that_hang_over_is_what_roughing_leaves():
     # Not twice the depth of cut, the boss's height: that would keep necks off flanges that lean over a boss by all of it.
     sides = [o for o in routed().process.operations if o.strategy == "surface.waterline"]
     assert sides and all(o.choices["surface.overhang"] == 0.5 for o in sides)
+
+
+def test_a_hole_that_no_drill_gets_at_for_what_stands_around_is_left_to_another_setup(monkeypatch):
+    def hindered(*_):
+        return Candidates(tools=(), reason="every drill would come too near", hindered=True)
+
+    monkeypatch.setattr("trunnion.plan.casing.hole_route.drills_for", hindered)
+    monkeypatch.setattr(
+        "trunnion.plan.casing.hole_route.mills_for", lambda *_: Candidates(tools=())
+    )
+    engine, session = own("casing")
+    found = engine.run(session, until="route")
+    codes = {f.code for f in found.process.findings}
+    assert "hole.not-reached" in codes and "route.no-cutter" not in codes
+    assert not [o for o in found.process.operations if o.kind == "drill"]

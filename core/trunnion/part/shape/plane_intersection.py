@@ -170,33 +170,42 @@ def trace(
     if not remaining:
         yield from _loops(tracer)
     while remaining:
-        node, point, uv = remaining.pop(0)
-        nearest = min((math.dist(p, point) for _, p, _ in remaining), default=size)
-        nudge = 0.02 * min(size, nearest)
-        senses = sorted(
-            (1.0, -1.0),
-            key=lambda sense: (
-                not view.holds(*tracer.stepped(uv, _scaled(tracer.direction(uv), sense * nudge)))
-            ),
-        )
-        found = (
-            next(
-                (
-                    f
-                    for f in (tracer.follow(uv, sense, remaining) for sense in senses)
-                    if f is not None
-                ),
-                None,
-            )
-            if remaining
-            else None
-        )
+        first, *others = remaining
+        found = _followed(tracer, first, others)
+        start = first
+        if found is None:
+            # Beside a corner a curve may be lost that is found from its other end.
+            for start in others:
+                found = _followed(tracer, start, [o for o in remaining if o is not start])
+                if found is not None and found[0] == first[0]:
+                    break
+                found = None
         if found is None:
             raise BadInput(
                 "a section curve ends inside a free-form face; heal the part in the CAD system"
             )
-        remaining = [item for item in remaining if item[0] != found[0]]
-        yield node, *found
+        remaining = [item for item in remaining if item[0] not in (start[0], found[0])]
+        yield start[0], *found
+
+
+def _followed(
+    tracer: Tracer, start: tuple[Node, Triple, UV], others: list[tuple[Node, Triple, UV]]
+) -> tuple[Node | None, Floats, Floats] | None:
+    """Return what `Tracer.follow` does from a node to one of the others, first to the side where the face is; None where that is lost."""
+    _, point, uv = start
+    if not others:
+        return None
+    nearest = min(math.dist(p, point) for _, p, _ in others)
+    nudge = 0.02 * min(tracer.size, nearest)
+    senses = sorted(
+        (1.0, -1.0),
+        key=lambda sense: (
+            not tracer.view.holds(*tracer.stepped(uv, _scaled(tracer.direction(uv), sense * nudge)))
+        ),
+    )
+    return next(
+        (f for f in (tracer.follow(uv, sense, others) for sense in senses) if f is not None), None
+    )
 
 
 def _loops(tracer: Tracer) -> Iterator[Piece]:

@@ -83,6 +83,10 @@ def casing_holes(state: CasingPlanState) -> tuple[CasingHole, ...]:
                 shape.bore, state.cutters("finish"), around, shape.bore.top, drilling.breakthrough
             )
         )
+        if drills.hindered and not mills.tools:
+            # Bolt circles of the lower flange, under the upper one: they are drilled the other way up.
+            state.findings.append(not_reached(feature, f"{feature.id}: {drills.reason}"))
+            continue
         found.append(
             CasingHole(
                 feature=feature,

@@ -143,6 +143,7 @@ def drills_for(
             tools=(),
             reason=f"shank or holder of every drill of D {size} would come too near to what stands around it",
             remedy=f"add a longer drill of D {size} to the tools folder, or drill before what stands there is left",
+            hindered=True,
         )
     # A point of its own is what a blind hole asks for, before all that would save a tool.
     own = [t for t in free if abs(t.point_angle - hole.point_angle) <= SAME_ANGLE]
