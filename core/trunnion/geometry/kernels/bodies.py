@@ -9,40 +9,75 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, Ints
+
+EDGE = 1e-6
+"""mm that groups are kept farther than they have to be: what their balls are rounded by."""
 
 
 @njit(cache=True, nogil=True)
-def bodies_hold(points: Floats, tips: Floats, axes: Floats, rows: Floats, held: Bools) -> None:
-    """Fill `held` (k,) with whether a body at tips (k, 3) with axes (k, 3) holds any of points (m, 3)."""
+def bodies_hold(
+    points: Floats,
+    start: Ints,
+    ball: Floats,
+    large_start: Ints,
+    large_ball: Floats,
+    tips: Floats,
+    axes: Floats,
+    rows: Floats,
+    held: Bools,
+) -> None:
+    """Fill `held` (k,) with whether a body at tips (k, 3) with axes (k, 3) holds any of points (m, 3), which are in groups as `PointGroups`
+    has them."""
     low, high, widest = rows[0, 0], rows[0, 2], 0.0
     for r in range(len(rows)):
         low, high = min(low, rows[r, 0]), max(high, rows[r, 2])
         widest = max(widest, rows[r, 1], rows[r, 3])
     for k in range(len(tips)):
         held[k] = False
-        for m in range(len(points)):
-            x = points[m, 0] - tips[k, 0]
-            y = points[m, 1] - tips[k, 1]
-            z = points[m, 2] - tips[k, 2]
-            along = x * axes[k, 0] + y * axes[k, 1] + z * axes[k, 2]
-            if along < low or along > high:
-                continue
-            square = x * x + y * y + z * z - along * along
-            if square >= widest * widest:
-                continue
-            for r in range(len(rows)):
-                z0, r0, z1, r1 = rows[r, 0], rows[r, 1], rows[r, 2], rows[r, 3]
-                if along < z0 or along > z1:
-                    continue
-                wide = max(r0, r1)
-                if z1 > z0:
-                    wide = r0 + (r1 - r0) * (along - z0) / (z1 - z0)
-                if square < wide * wide:
-                    held[k] = True
-                    break
+        tip, axis = tips[k], axes[k]
+        for g in range(len(large_ball)):
             if held[k]:
                 break
+            if _misses(large_ball[g], tip, axis, low, high, widest):
+                continue
+            for s in range(large_start[g], large_start[g + 1]):
+                if held[k]:
+                    break
+                if not _misses(ball[s], tip, axis, low, high, widest):
+                    held[k] = _holds(points, start[s], start[s + 1], tip, axis, rows)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _misses(
+    ball: Floats, tip: Floats, axis: Floats, low: float, high: float, widest: float
+) -> bool:
+    """Return whether a ball lies outside of the cylinder about a body."""
+    x, y, z = ball[0] - tip[0], ball[1] - tip[1], ball[2] - tip[2]
+    along = x * axis[0] + y * axis[1] + z * axis[2]
+    if along + ball[3] < low - EDGE or along - ball[3] > high + EDGE:
+        return True
+    far = widest + ball[3] + EDGE
+    return x * x + y * y + z * z - along * along > far * far
+
+
+@njit(cache=True, nogil=True)
+def _holds(points: Floats, first: int, last: int, tip: Floats, axis: Floats, rows: Floats) -> bool:
+    """Return whether a body holds any of the points from `first` to `last`."""
+    for m in range(first, last):
+        x, y, z = points[m, 0] - tip[0], points[m, 1] - tip[1], points[m, 2] - tip[2]
+        along = x * axis[0] + y * axis[1] + z * axis[2]
+        square = x * x + y * y + z * z - along * along
+        for r in range(len(rows)):
+            z0, r0, z1, r1 = rows[r, 0], rows[r, 1], rows[r, 2], rows[r, 3]
+            if along < z0 or along > z1:
+                continue
+            wide = max(r0, r1)
+            if z1 > z0:
+                wide = r0 + (r1 - r0) * (along - z0) / (z1 - z0)
+            if square < wide * wide:
+                return True
+    return False
 
 
 def bodies_hold_reference(

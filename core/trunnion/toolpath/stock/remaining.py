@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.kernels.bodies import bodies_hold
+from trunnion.geometry.point_groups import PointGroups
 from trunnion.model.blank import Blank
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.threads import in_parallel
@@ -33,6 +34,14 @@ class RemainingStock:
 
     points: Floats
     cell: float
+    _groups: list[PointGroups] = field(init=False, repr=False, default_factory=list)
+
+    @property
+    def groups(self) -> PointGroups:
+        """The positions in groups; made on first use."""
+        if not self._groups:
+            self._groups.append(PointGroups.of(self.points, self.cell))
+        return self._groups[0]
 
     @staticmethod
     def of(
@@ -72,10 +81,15 @@ class RemainingStock:
         body = np.array([(z0 - wider, r0 + wider, z1, r1 + wider) for z0, r0, z1, r1 in rows])
         held = np.zeros(len(tip), dtype=bool)
         if len(self.points) and len(body):
+            groups = self.groups
 
             def work(first: int, last: int) -> None:
                 bodies_hold(
-                    self.points,
+                    groups.points,
+                    groups.start,
+                    groups.ball,
+                    groups.large_start,
+                    groups.large_ball,
                     np.ascontiguousarray(tip[first:last]),
                     np.ascontiguousarray(axis[first:last]),
                     body,

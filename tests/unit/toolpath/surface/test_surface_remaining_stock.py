@@ -10,6 +10,7 @@ import pytest
 from surface_drives import DATA, driven, grid, joined
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.kernels.bodies import bodies_hold, bodies_hold_reference
+from trunnion.geometry.point_groups import PointGroups
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Box
 from trunnion.model.motion.toolpath import Mark, Motion
@@ -67,16 +68,42 @@ def roofed():
     return joined(floor, leaf(12.0, (0.0, 0.0), (10.0, 30.0)))
 
 
-def test_the_compiled_kernel_and_the_plain_one_agree():
+@pytest.mark.parametrize(("count", "spacing"), [(60, 1.0), (60, 100.0), (3000, 1.5)])
+def test_the_compiled_kernel_and_the_plain_one_agree(count, spacing):
     pick = np.random.default_rng(3)
-    points, tips = pick.uniform(-10.0, 10.0, (60, 3)), pick.uniform(-10.0, 10.0, (40, 3))
-    axes = pick.normal(size=(40, 3))
+    points, tips = pick.uniform(-10.0, 10.0, (count, 3)), pick.uniform(-30.0, 30.0, (400, 3))
+    axes = pick.normal(size=(400, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
     rows = np.array([[0.0, 1.0, 4.0, 1.0], [4.0, 1.0, 6.0, 3.0], [6.0, 5.0, 9.0, 5.0]])
-    found, plain = np.zeros(40, bool), np.zeros(40, bool)
-    bodies_hold(points, tips, axes, rows, found)
+    found, plain = np.zeros(400, bool), np.zeros(400, bool)
+    groups = PointGroups.of(points, spacing)
+    bodies_hold(
+        groups.points,
+        groups.start,
+        groups.ball,
+        groups.large_start,
+        groups.large_ball,
+        tips,
+        axes,
+        rows,
+        found,
+    )
     bodies_hold_reference(points, tips, axes, rows, plain)
-    assert (found == plain).all() and 0 < found.sum() < 40
+    assert (found == plain).all() and 0 < found.sum() < 400
+
+
+def test_groups_hold_every_point_within_their_balls():
+    points = np.random.default_rng(5).uniform(-10.0, 10.0, (5000, 3))
+    groups = PointGroups.of(points, 1.0)
+    assert sorted(groups.points.tolist()) == sorted(points.tolist())
+    for start, ball in (
+        (groups.start, groups.ball),
+        (groups.start[groups.large_start], groups.large_ball),
+    ):
+        group = np.repeat(np.arange(len(ball)), np.diff(start))
+        away = np.linalg.norm(groups.points - ball[group, :3], axis=1)
+        assert (away <= ball[group, 3] + 1e-9).all()
+    assert len(groups.large_ball) < len(groups.ball) / 8 < len(points) / 64
 
 
 def test_what_one_direction_has_cut_stands_no_more():
