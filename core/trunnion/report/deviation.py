@@ -151,19 +151,19 @@ def _coarser(corners: Floats, apart: Floats) -> float:
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     height = np.linalg.norm(normal, axis=1) / np.maximum(longest, COINCIDENT)
+    # Halving all of its sides makes four of a triangle; of a sliver the two long ones, which makes three.
     times = 1.0
-    while (
-        float(_pieces(longest, times * apart) @ _pieces(height, times * apart)) > MOST_TRIANGLES
-        and (longest > times * apart).any()
-    ):
+    while (longest > times * apart).any():
+        along, across = (_halvings(size, times * apart) for size in (longest, height))
+        if float((3.0 ** (along - across) * 4.0**across).sum()) <= MOST_TRIANGLES:
+            break
         times *= 2.0
     return times
 
 
-def _pieces(size: Floats, apart: Floats) -> Floats:
-    """Return in how many pieces at most (t,) lengths (t,) go by halving until none is longer than `apart` (t,)."""
-    share = np.maximum(size, apart) / np.maximum(apart, COINCIDENT)
-    return np.asarray(2.0 ** np.ceil(np.log2(share)))
+def _halvings(size: Floats, apart: Floats) -> Floats:
+    """Return how often lengths (t,) are halved until none is longer than `apart` (t,)."""
+    return np.asarray(np.ceil(np.log2(np.maximum(size, apart) / np.maximum(apart, COINCIDENT))))
 
 
 def _halved(

@@ -77,9 +77,9 @@ class _Net:
             np.maximum(total**2 - 2.0 * (square**2).sum(axis=1, keepdims=True), 1e-24 * total**2)
         )
         self.cotangent[changed] = (total - 2.0 * square) / four
-        touched = np.zeros(len(self.ends), dtype=bool)
-        touched[self.side[changed]] = True
-        around = np.flatnonzero(touched & self.may_flip)
+        is_around = np.zeros(len(self.ends), dtype=bool)
+        is_around[self.side[changed]] = True
+        around = np.flatnonzero(is_around & self.may_flip)
         low, high = np.sort(self.half[around], axis=1).T
         self.lean[around] = self.cotangent.ravel()[low] + self.cotangent.ravel()[high]
 
