@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.bodies import bodies_hold
 
 SMALL, LARGE = 4, 4
 """A small box is so many spacings of the points wide, a large one so many small ones: 64 points, and 64 small boxes, of a full lattice."""
@@ -47,8 +48,24 @@ class PointGroups:
             large_ball=_balls(points, start[large_start]),
         )
 
+    def held_by(self, rows: Floats, tip: Floats, axis: Floats) -> Bools:
+        """Return at which tips (k, 3) with axes (k, 3) a body of cones (r, 4), as `kernels/bodies.py` has them, holds any of the points."""
+        held = np.zeros(len(tip), dtype=bool)
+        bodies_hold(
+            self.points,
+            self.start,
+            self.ball,
+            self.large_start,
+            self.large_ball,
+            np.ascontiguousarray(tip),
+            np.ascontiguousarray(axis),
+            rows,
+            held,
+        )
+        return held
 
-def _changes(keys: Ints) -> Ints:
+
+def _changes(keys: Ints) -> Bools:
     """Return where rows of keys (n, k) differ from the one before (n,); the first does."""
     return np.append(True, (np.diff(keys, axis=0) != 0).any(axis=1))
 

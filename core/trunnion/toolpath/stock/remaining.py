@@ -15,7 +15,6 @@ from scipy.spatial import cKDTree
 
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.kernels.bodies import bodies_hold
 from trunnion.geometry.point_groups import PointGroups
 from trunnion.model.blank import Blank
 from trunnion.progress import NO_PROGRESS, Progress
@@ -84,17 +83,7 @@ class RemainingStock:
             groups = self.groups
 
             def work(first: int, last: int) -> None:
-                bodies_hold(
-                    groups.points,
-                    groups.start,
-                    groups.ball,
-                    groups.large_start,
-                    groups.large_ball,
-                    np.ascontiguousarray(tip[first:last]),
-                    np.ascontiguousarray(axis[first:last]),
-                    body,
-                    held[first:last],
-                )
+                held[first:last] = groups.held_by(body, tip[first:last], axis[first:last])
 
             in_parallel(work, len(tip), POSES, progress, "Looking for what stands in the way")
         return ~held

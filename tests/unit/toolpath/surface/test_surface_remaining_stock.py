@@ -9,7 +9,7 @@ import pytest
 
 from surface_drives import DATA, driven, grid, joined
 from trunnion.geometry.frame import WORLD
-from trunnion.geometry.kernels.bodies import bodies_hold, bodies_hold_reference
+from trunnion.geometry.kernels.bodies import bodies_hold_reference
 from trunnion.geometry.point_groups import PointGroups
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Box
@@ -75,19 +75,8 @@ def test_the_compiled_kernel_and_the_plain_one_agree(count, spacing):
     axes = pick.normal(size=(400, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
     rows = np.array([[0.0, 1.0, 4.0, 1.0], [4.0, 1.0, 6.0, 3.0], [6.0, 5.0, 9.0, 5.0]])
-    found, plain = np.zeros(400, bool), np.zeros(400, bool)
-    groups = PointGroups.of(points, spacing)
-    bodies_hold(
-        groups.points,
-        groups.start,
-        groups.ball,
-        groups.large_start,
-        groups.large_ball,
-        tips,
-        axes,
-        rows,
-        found,
-    )
+    plain = np.zeros(400, bool)
+    found = PointGroups.of(points, spacing).held_by(rows, tips, axes)
     bodies_hold_reference(points, tips, axes, rows, plain)
     assert (found == plain).all() and 0 < found.sum() < 400
 
