@@ -1,8 +1,8 @@
 """The deviation map: how far every position of the finished part is from the part as drawn, as triangles with a value at each corner.
 
-The proof measures at samples. Faces on which they differ are divided until no edge is longer than the samples there are apart, or a few
-times that where it would take too many triangles; a corner has the value of its nearest sample, and a sample outside the tolerance passes
-its value to the corners around it, so that no gouge falls between.
+The proof measures at samples. Faces on which they differ are divided until no edge is longer than the samples there are apart, all of them
+less finely where that would take too many triangles. A corner has the value of its nearest sample, and a sample outside the tolerance
+passes its value to the corners around it, so that no gouge falls between.
 """
 
 from __future__ import annotations

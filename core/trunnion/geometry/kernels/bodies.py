@@ -12,7 +12,7 @@ from numba import njit
 from trunnion.geometry.arrays import Bools, Floats, Ints
 
 EDGE = 1e-6
-"""mm that groups are kept farther than they have to be: what their balls are rounded by."""
+"""mm that the balls about groups count as wider by, for rounding."""
 
 
 @njit(cache=True, nogil=True)

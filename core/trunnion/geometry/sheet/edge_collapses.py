@@ -116,20 +116,19 @@ def _apart(triangles: Ints, goes: Ints, onto: Ints, n: int) -> tuple[Ints, Ints]
         least = np.full(n, none)
         for k in range(3):
             np.minimum.at(least, triangles[:, k], first)
-        # A point wins where no triangle of its own has a corner that an earlier one reaches, or that is taken.
-        lost = np.zeros(none + 1, dtype=bool)
+        # A point wins where no triangle of its own has a corner that an earlier one reaches, or that is taken: then it is out for good.
         reached, blocked = least[triangles].min(axis=1), taken[triangles].any(axis=1)
+        out, lost = np.zeros(none + 1, dtype=bool), np.zeros(none + 1, dtype=bool)
         for k in range(3):
-            lost[of[(reached < of[:, k]) | blocked, k]] = True
+            out[of[blocked, k]] = True
+            lost[of[reached < of[:, k], k]] = True
+        lost |= out
         drawn = np.unique(first)
         new = drawn[~lost[drawn]]
         won[new] = True
         is_new = np.zeros(none + 1, dtype=bool)
         is_new[new] = True
         taken[triangles[is_new[of].any(axis=1)]] = True
-        out = np.zeros(none + 1, dtype=bool)
-        for k in range(3):
-            out[of[blocked, k]] = True
         out[new] = True
         rank[goes[out[:none]]] = none
     return goes[won], onto[won]
