@@ -130,7 +130,7 @@ def drive_of(skin: Skin, faces=(1,), height=0.01) -> SurfaceDrive:
 def stepovers_away(drive: SurfaceDrive, tool, ways) -> np.ndarray:
     """How many stepovers the points of a finer sheet than a strategy's are from passes of contacts."""
     measure = stepover_measure(tool, drive.height)
-    sheet = split_finely(sheet_of(drive.skin, drive.faces), measure, 0.12)
+    sheet = split_finely(sheet_of(drive.skin, drive.faces), measure, 0.12, evenly=True)
     dense = np.concatenate([np.linspace(w.point[:-1], w.point[1:], 9).reshape(-1, 3) for w in ways])
     size = 2.0 * np.sqrt(2.0 * tool.corner_radius * drive.height)
     plain = cKDTree(dense).query(sheet.points)[0] / size

@@ -22,6 +22,7 @@ from surface_forms import (
 )
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.frame import WORLD
+from trunnion.geometry.sheet.fields import blend
 from trunnion.geometry.sheet.sheet import sheet_of
 from trunnion.model.motion.toolpath import Mark
 from trunnion.model.setup import Setup
@@ -164,6 +165,23 @@ def test_flow_lines_cover_all_within_half_a_stepover(name: str) -> None:
     drive = drive_of(FORMS[name])
     away = stepovers_away(drive, BALL, flow_lines(drive, BALL))
     assert np.percentile(away, 99.0) < 0.52 and away.max() < 0.6
+
+
+def test_flow_lines_over_slivers_are_laid_over_even_triangles(monkeypatch) -> None:
+    # Strips 0.02 mm wide, as a mesh within half a micron has them beside a small fillet.
+    drive = drive_of(cylinder(radius=10.0, length=8.0, angle=0.3, n=301))
+    sizes = []
+
+    def recorded(metric, *guides):
+        sizes.append((len(metric.sheet.triangles), float(metric.area().sum())))
+        return blend(metric, *guides)
+
+    monkeypatch.setattr("trunnion.toolpath.contact_passes.flow_lines.blend", recorded)
+    away = stepovers_away(drive, BALL, flow_lines(drive, BALL))
+    assert np.percentile(away, 99.0) < 0.52 and away.max() < 0.6
+    ((triangles, squares),) = sizes
+    # Equilateral ones with sides of a stepover would be 2.3 in a square; rims keep their 600 points, and halving leaves shorter edges.
+    assert triangles < 6.0 * 2.3 * squares + 2 * 600
 
 
 def test_flow_lines_over_a_plane_are_rows_that_climb() -> None:

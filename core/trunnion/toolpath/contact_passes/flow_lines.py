@@ -81,7 +81,8 @@ def flow_lines(
         wide = float(coarse.area().sum())
         # Guides that a person named may be rims of holes.
         whole = part if flow.first_guide else part.filled(holes_of(coarse))
-        sheet = split_finely(whole, measure, max(FINENESS, math.sqrt(wide / ENOUGH)), share)
+        longest = max(FINENESS, math.sqrt(wide / ENOUGH))
+        sheet = split_finely(whole, measure, longest, share, evenly=True)
         guides = _guides(sheet, drive, flow)
         for line in _lines(metric_of(sheet, measure), guides, flow.spiral, share):
             point, normal = spread(
