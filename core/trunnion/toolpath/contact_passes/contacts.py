@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats, floats
+from trunnion.geometry.arrays import Bools, Floats, Ints, floats
 from trunnion.geometry.sphere import angle_between
 
 _STILL = 1e-9
@@ -88,7 +88,14 @@ def between(point: Floats, normal: Floats, feed: Floats, position: Floats) -> tu
     Position 2.25 is a quarter of the distance from the third contact to the next; `feed` (n, 3) are the unit directions of the path.
     """
     row = np.clip(position.astype(np.int64), 0, len(point) - 2)
-    u = (position - row)[:, None]
+    return between_rows(point, normal, feed, row, position - row)
+
+
+def between_rows(
+    point: Floats, normal: Floats, feed: Floats, row: Ints, share: Floats
+) -> tuple[Floats, Floats]:
+    """Return points and unit normals (k, 3) at shares (k,) of the distances from the contacts of some rows (k,) to those after them."""
+    u = share[:, None]
     a, b, start, end = point[row], point[row + 1], feed[row], feed[row + 1]
     # As long as the tangents of an arc's cubic: chord / cos^2(turn / 4).
     half = np.sqrt(0.5 * (1.0 + np.clip((start * end).sum(axis=1, keepdims=True), -1.0, 1.0)))
@@ -99,12 +106,6 @@ def between(point: Floats, normal: Floats, feed: Floats, position: Floats) -> tu
         + length * (start * u * (1.0 - u) ** 2 - end * u * u * (1.0 - u))
     )
     return found, _scaled((1.0 - u) * normal[row] + u * normal[row + 1])
-
-
-def value_at(values: Floats, position: Floats) -> Floats:
-    """Return what grows evenly between values (n,) at positions (k,), as `between` counts them."""
-    row = np.clip(position.astype(np.int64), 0, len(values) - 2)
-    return np.asarray(values[row] + (position - row) * (values[row + 1] - values[row]))
 
 
 def axis_between(axis: Floats, position: Floats) -> Floats:

@@ -6,14 +6,14 @@ Moves between two clear poses may touch something: they go back to the search fo
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, C
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceQuery
@@ -23,17 +23,20 @@ from trunnion.toolpath.contact_passes.axis_fields import AxisField
 from trunnion.toolpath.contact_passes.axis_search import (
     STEP,
     AxisSearch,
+    FreeAxes,
     LeanLimits,
     free_axes,
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts, between
 from trunnion.toolpath.contact_passes.passes import Pass
-from trunnion.toolpath.contact_passes.run_poses import RunPoses
+from trunnion.toolpath.contact_passes.run_poses import AxisRuns, RunPoses, poses_along
 
 TRIES = 4
 """Times that axes are chosen again where a move between two clear ones touched something."""
 OVERLAP = 0.25
 """Of an earlier cutter's radius: how far what it left is cut beyond its end."""
+CONTACTS = 20_000
+"""Contacts of the lines that are followed together: many short runs are one work for arrays and for all cores, and it is soon done."""
 STRAIGHT = 1000.0
 """mm: a cutter that is flatter where it touches counts as this round."""
 
@@ -70,18 +73,16 @@ def milled(
     again = list(range(len(contact_lines)))
     for n in range(TRIES):
         share = progress.part(1.0 - 0.5 ** (n + 1), 1.0 - 0.5 ** (n + 2))
-        runs = [
-            [
-                RunPoses.of(contact_lines[k], run, tool, chord, allowance)
-                for run in axes_of_lines[k].runs()
-            ]
-            for k in share.over(again, "Following flow lines with a leaning tool")
-        ]
-        cut = _cut(runs, query)
-        for k, (pieces, _) in zip(again, cut, strict=True):
-            found[k] = pieces
+        met_on = dict[int, Floats]()
+        for lines in share.over(
+            list(_chunks(contact_lines, again)), "Following flow lines with a leaning tool"
+        ):
+            runs = [(k, run) for k in lines for run in axes_of_lines[k].runs()]
+            found_on = _cut(contact_lines, runs, tool, chord, allowance, query)
+            for k in lines:
+                found[k], met_on[k] = found_on.get(k, ([], np.zeros(0)))
         if n + 1 < TRIES:
-            search.met({k: met for k, (_, met) in zip(again, cut, strict=True) if len(met)})
+            search.met({k: met for k, met in met_on.items() if len(met)})
         again = np.flatnonzero(search.dirty).tolist()
         axes_of_lines = search.found_axes(share) if again else axes_of_lines
     # What no pass covers is the rest, in rows of the contacts: left to a thinner tool or reported.
@@ -174,43 +175,65 @@ def grooving(tool: Tool, lead: float, tilt: float) -> Tool:
     )
 
 
+def _chunks(contact_lines: Sequence[Contacts], numbers: Sequence[int]) -> Iterator[list[int]]:
+    """Yield the numbers of lines in pieces of `CONTACTS` contacts and one line more at most."""
+    some, size = list[int](), 0
+    for k in numbers:
+        some.append(k)
+        size += len(contact_lines[k])
+        if size >= CONTACTS:
+            yield some
+            some, size = [], 0
+    if some:
+        yield some
+
+
 def _cut(
-    runs: Sequence[Sequence[RunPoses]], query: ClearanceQuery | None
-) -> list[tuple[list[tuple[Floats, Pass]], Floats]]:
-    """Return for the runs of each line the stretches whose moves are clear, and the positions where a move is not."""
-    every = [run for some in runs for run in some]
-    clear = _clear(every, query)
-    # A long block that touches something is tried again from one chosen axis to the next: these poses are clear.
-    more = [run.axis_positions_within(~own) for run, own in zip(every, clear, strict=True)]
-    again = [k for k, positions in enumerate(more) if len(positions)]
-    for k in again:
-        every[k] = every[k].with_positions(more[k])
-    for k, own in zip(again, _clear([every[k] for k in again], query), strict=True):
-        clear[k] = own
-    found, number = [], iter(range(len(every)))
-    for some in runs:
-        pieces, met = list[tuple[Floats, Pass]](), [np.zeros(0)]
-        for _ in some:
-            k = next(number)
-            position, poses = every[k].position, every[k].poses
-            pieces += [(position[s], poses.of(s)) for s in _stretches(clear[k])]
-            met.append(0.5 * (position[:-1] + position[1:])[~clear[k]])
-        found.append((pieces, np.concatenate(met)))
-    return found
+    contact_lines: Sequence[Contacts],
+    runs: Sequence[tuple[int, FreeAxes]],
+    tool: Tool,
+    chord: float,
+    allowance: float,
+    query: ClearanceQuery | None,
+) -> dict[int, tuple[list[tuple[Floats, Pass]], Floats]]:
+    """Return by lines, which runs are given with, the stretches whose moves are clear, and the positions where a move is not."""
+    if not runs:
+        return {}
+    joined = AxisRuns.of([(contact_lines[k], run) for k, run in runs], tool, allowance)
+    made = poses_along(joined, chord)
+    blocks = made.blocks()
+    clear = np.zeros(len(made.position), bool)
+    clear[blocks] = _clear(made, blocks, query)
+    # A long block that touches something is tried again from one of the run's axes to the next: these poses are clear.
+    long = blocks[~clear[blocks]]
+    run, position = made.axes_within(long)
+    if len(run):
+        order = joined.order(made.run, made.position)
+        at = np.searchsorted(order, joined.order(run, position))
+        made, clear = made.with_positions(run, position), np.insert(clear, at, False)
+        parts = np.insert(np.zeros(len(order), bool), at, True)
+        # All parts of a block that was split: those that begin at a new pose, and the one before the first of these.
+        parts[:-1] |= parts[1:]
+        again = np.flatnonzero(parts)
+        clear[again] = _clear(made, again, query)
+    found = {k: (list[tuple[Floats, Pass]](), list[Floats]()) for k, _ in runs}
+    start = np.searchsorted(made.run, np.arange(len(runs) + 1))
+    for (k, _), a, b in zip(runs, start[:-1].tolist(), start[1:].tolist(), strict=True):
+        positions, own = made.position[a:b], clear[a : b - 1]
+        pieces, met = found[k]
+        pieces += [
+            (positions[s], made.poses.of(slice(a + s.start, a + s.stop))) for s in _stretches(own)
+        ]
+        met.append(0.5 * (positions[:-1] + positions[1:])[~own])
+    return {k: (pieces, np.concatenate(met)) for k, (pieces, met) in found.items()}
 
 
-def _clear(runs: Sequence[RunPoses], query: ClearanceQuery | None) -> list[Bools]:
-    """Return which blocks of runs are clear, asked for all together: a pass alone is too short a work for two cores."""
-    if query is None or not runs:
-        return [np.ones(len(run.position) - 1, bool) for run in runs]
-    poses = [run.poses for run in runs]
-    clear = query(
-        np.concatenate([p.tip[1:] for p in poses]),
-        np.concatenate([p.axis[1:] for p in poses]),
-        start_tip=np.concatenate([p.tip[:-1] for p in poses]),
-        start_axis=np.concatenate([p.axis[:-1] for p in poses]),
-    )
-    return np.split(clear, np.cumsum([len(p) - 1 for p in poses])[:-1])
+def _clear(made: RunPoses, blocks: Ints, query: ClearanceQuery | None) -> Bools:
+    """Return which of some blocks (b,) are clear."""
+    if query is None or not len(blocks):
+        return np.ones(len(blocks), bool)
+    tip, axis = made.poses.tip, made.poses.axis
+    return query(tip[blocks + 1], axis[blocks + 1], start_tip=tip[blocks], start_axis=axis[blocks])
 
 
 def _stretches(clear: Bools) -> list[slice]:

@@ -1,19 +1,25 @@
-"""Where a leaning cutter is along a run of chosen axes: in blocks as long as their chord error and the chosen axes allow."""
+"""Where a leaning cutter is along runs of axes: in blocks as long as their chord error and the axes allow.
+
+Many runs are worked on together, one after the other in the same arrays: most are short, and one by one they would cost more in calls than
+in numbers.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.toolpath.contact_passes.axis_search import FreeAxes
-from trunnion.toolpath.contact_passes.contacts import Contacts, between, slerp, value_at
+from trunnion.toolpath.contact_passes.contacts import Contacts, between_rows, slerp
 from trunnion.toolpath.contact_passes.passes import Pass
 
 SHARES = (0.25, 0.5, 0.75)
@@ -21,102 +27,218 @@ SHARES = (0.25, 0.5, 0.75)
 HALVINGS = 16
 """Times that a block is halved at most."""
 MOST_AXES, FEWEST_BLOCKS = 16, 4
-"""Chosen axes that one block spans at most, and blocks that a pass has at least before they are halved: the ends of a loop meet."""
+"""Axes that one block spans at most, and blocks that a pass has at least before they are halved: the ends of a loop meet."""
 ASTRAY = math.radians(0.5)
-"""rad: how far a block's axis may be from the one that was chosen, between its ends."""
+"""rad: how far a block's axis may be from the run's, between its ends."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class AxisRuns:
+    """Runs of axes along contact lines, one run after the other, and the cutter that follows them.
+
+    Of the contacts (n, 3) of all lines: point, normal, feed and how far (n,) the cutter has come; of each run (r,) the row of its line's
+    first contact and of its last. Of the axes (m, 3) of all runs: their positions (m,), as `contacts.between` counts them along their line,
+    ascending in each run, and from `start` (r + 1,) on those of each run.
+    """
+
+    tool: Tool
+    allowance: float
+    point: Floats
+    normal: Floats
+    feed: Floats
+    travel: Floats
+    first: Ints
+    last: Ints
+    axis_position: Floats
+    axis: Floats
+    start: Ints
+
+    @staticmethod
+    def of(
+        runs: Sequence[tuple[Contacts, FreeAxes]], tool: Tool, allowance: float = 0.0
+    ) -> AxisRuns:
+        """Return runs, at least one, each with its contact line, for a cutter that keeps `allowance` mm from the contacts."""
+        radius = max(tool.corner_radius, 0.25 * tool.radius)
+        lines = list({id(contacts): contacts for contacts, _ in runs}.values())
+        ends = np.cumsum([len(line) for line in lines])
+        row = {id(line): k for k, line in enumerate(lines)}
+        of_run = np.array([row[id(contacts)] for contacts, _ in runs])
+        return AxisRuns(
+            tool=tool,
+            allowance=allowance,
+            point=np.concatenate([line.point for line in lines]),
+            normal=np.concatenate([line.normal for line in lines]),
+            feed=np.concatenate([line.feed for line in lines]),
+            travel=np.concatenate([line.travel(radius) for line in lines]),
+            first=np.concatenate([[0], ends[:-1]])[of_run],
+            last=(ends - 1)[of_run],
+            axis_position=np.concatenate([run.position for _, run in runs]),
+            axis=np.concatenate([run.axis for _, run in runs]),
+            start=np.cumsum([0, *(len(run.position) for _, run in runs)]),
+        )
+
+    def order(self, run: Ints, position: Floats) -> Floats:
+        """Return numbers (k,) that ascend from run to run and along each: by them positions are looked up and merged."""
+        # A number left out between runs keeps the end of one apart from the start of the next.
+        begin = np.concatenate([[0], np.cumsum(self.last - self.first + 2)[:-1]])
+        return np.asarray(begin[run] + position)
+
+    def contact(self, run: Ints, position: Floats) -> tuple[Floats, Floats]:
+        """Return contact points and unit normals (k, 3) at positions (k,) of runs (k,)."""
+        row = self._row(run, position)
+        at = position - (row - self.first[run])
+        return between_rows(self.point, self.normal, self.feed, row, at)
+
+    def travelled(self, run: Ints, position: Floats) -> Floats:
+        """Return how far (k,) the cutter has come at positions (k,) of runs (k,)."""
+        row = self._row(run, position)
+        at = position - (row - self.first[run])
+        return np.asarray(self.travel[row] + at * (self.travel[row + 1] - self.travel[row]))
+
+    def axis_at(self, run: Ints, position: Floats) -> Floats:
+        """Return the axes (k, 3) at positions (k,) of runs (k,)."""
+        own = self.order(
+            np.repeat(np.arange(len(self.first)), np.diff(self.start)), self.axis_position
+        )
+        row = np.searchsorted(own, self.order(run, position), side="right") - 1
+        row = np.clip(row, self.start[run], self.start[run + 1] - 2)
+        before, after = self.axis_position[row], self.axis_position[row + 1]
+        share = np.clip((position - before) / (after - before), 0.0, 1.0)
+        return slerp(self.axis[row], self.axis[row + 1], share)
+
+    def poses(self, run: Ints, position: Floats) -> Pass:
+        """Return the cutter at positions (k,) of runs (k,)."""
+        point, normal = self.contact(run, position)
+        axis = self.axis_at(run, position)
+        tip = tip_at(self.tool, point + self.allowance * normal, normal, axis)
+        return Pass(tip=tip, axis=axis, normal=normal)
+
+    def begun(self) -> RunPoses:
+        """Return poses at the ends of all runs and at every so many axes between."""
+        run, position = [], []
+        for k, (a, b) in enumerate(pairwise(self.start.tolist())):
+            stride = max(1, min(MOST_AXES, (b - a - 1) // FEWEST_BLOCKS))
+            position.append(
+                np.append(self.axis_position[a : b - 1 : stride], self.axis_position[b - 1])
+            )
+            run.append(np.full(len(position[-1]), k))
+        of_run, at = np.concatenate(run), np.concatenate(position)
+        return RunPoses(runs=self, run=of_run, position=at, poses=self.poses(of_run, at))
+
+    def inner(self) -> tuple[Ints, Floats]:
+        """Return run and position (k,), in order, of all axes and of all contacts that lie within runs."""
+        low = np.floor(self.axis_position[self.start[:-1]]).astype(np.int64)
+        count = np.ceil(self.axis_position[self.start[1:] - 1]).astype(np.int64) - low
+        number = np.arange(len(self.first))
+        run = np.concatenate([np.repeat(number, np.diff(self.start)), np.repeat(number, count)])
+        position = np.concatenate([self.axis_position, low.repeat(count) + _numbered(count)])
+        order = np.argsort(self.order(run, position), kind="stable")
+        return run[order], position[order]
+
+    def _row(self, run: Ints, position: Floats) -> Ints:
+        """Return the rows (k,) of the contacts that positions (k,) lie behind, never a line's last one."""
+        row = self.first[run] + position.astype(np.int64)
+        return np.clip(row, self.first[run], self.last[run] - 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class RunPoses:
-    """A run of axes along a contact pass, and the cutter on it: the `position` (k,) of each of its poses along the contacts."""
+    """Poses of a cutter along runs: the number (k,) of the run of each, ascending, and its `position` (k,) on it, ascending in each run.
 
-    contacts: Contacts
-    run: FreeAxes
-    tool: Tool
-    allowance: float
+    Two poses of one run, one after the other, are the ends of a block, which goes by the row of the first.
+    """
+
+    runs: AxisRuns
+    run: Ints
     position: Floats
     poses: Pass
 
-    @staticmethod
-    def of(
-        contacts: Contacts, run: FreeAxes, tool: Tool, chord: float, allowance: float = 0.0
-    ) -> RunPoses:
-        """Return where a cutter is along a run, in blocks as long as the chord error (mm) and the chosen axes allow."""
-        axis_positions = run.position
-        stride = max(1, min(MOST_AXES, (len(axis_positions) - 1) // FEWEST_BLOCKS))
-        position = np.append(axis_positions[:-1:stride], axis_positions[-1])
-        made = RunPoses.at(contacts, run, tool, allowance, position)
-        radius = max(tool.corner_radius, 0.25 * tool.radius)
-        travel = contacts.travel(radius)
-        inside = np.arange(math.floor(position[0]), math.ceil(position[-1]), dtype=np.float64)
-        inner = np.concatenate([inside, axis_positions[1:-1]])
-        inner = inner[(inner > position[0]) & (inner < position[-1])]
-        for _ in range(HALVINGS):
-            worst = made._off(inner, travel, chord)
-            split = np.flatnonzero(
-                (worst > 1.0)
-                & (
-                    np.linalg.norm(np.diff(made.poses.tip, axis=0), axis=1)
-                    > 2.0 * tolerance.SHORT_MOVE
-                )
-            )
-            if not len(split):
-                break
-            middles = 0.5 * (made.position[split] + made.position[split + 1])
-            made = made.with_positions(middles)
-        return made
+    def blocks(self) -> Ints:
+        """Return the rows (b,) of all blocks."""
+        return np.flatnonzero(self.run[:-1] == self.run[1:])
 
-    @staticmethod
-    def at(
-        contacts: Contacts, run: FreeAxes, tool: Tool, allowance: float, position: Floats
-    ) -> RunPoses:
-        """Return the run with poses at positions (k,)."""
-        point, normal = between(contacts.point, contacts.normal, contacts.feed, position)
-        axis = run.at(position)
-        tip = tip_at(tool, point + allowance * normal, normal, axis)
+    def with_positions(self, run: Ints, position: Floats) -> RunPoses:
+        """Return them with poses at more positions (m,) of runs (m,), in order, at which there are none yet."""
+        order = self.runs.order
+        at = np.searchsorted(order(self.run, self.position), order(run, position))
+        more = self.runs.poses(run, position)
+        tip, axis, normal = (
+            np.insert(getattr(self.poses, name), at, getattr(more, name), axis=0)
+            for name in ("tip", "axis", "normal")
+        )
         return RunPoses(
-            contacts=contacts,
-            run=run,
-            tool=tool,
-            allowance=allowance,
-            position=position,
+            runs=self.runs,
+            run=np.insert(self.run, at, run),
+            position=np.insert(self.position, at, position),
             poses=Pass(tip=tip, axis=axis, normal=normal),
         )
 
-    def with_positions(self, more: Floats) -> RunPoses:
-        """Return the run with poses at more positions (m,)."""
-        position = np.union1d(self.position, more)
-        return RunPoses.at(self.contacts, self.run, self.tool, self.allowance, position)
+    def axes_within(self, blocks: Ints) -> tuple[Ints, Floats]:
+        """Return run and position (m,), in order, of the runs' axes between the ends of some blocks (b,)."""
+        runs = self.runs
+        owner = np.repeat(np.arange(len(runs.first)), np.diff(runs.start))
+        own, here = runs.order(owner, runs.axis_position), runs.order(self.run, self.position)
+        # Halves of halves may fall on an axis but for rounding: there is a pose already.
+        low = np.searchsorted(own, here[blocks] + tolerance.PARAMETRIC)
+        count = np.searchsorted(own, here[blocks + 1] - tolerance.PARAMETRIC) - low
+        count = np.maximum(count, 0)
+        row = np.repeat(low, count) + _numbered(count)
+        return owner[row], runs.axis_position[row]
 
-    def axis_positions_within(self, blocks: Bools) -> Floats:
-        """Return the positions (m,) of chosen axes within some of the blocks (k - 1,)."""
-        block = np.searchsorted(self.position, self.run.position, side="right") - 1
-        inside = (block < len(blocks)) & ~np.isin(self.run.position, self.position)
-        return self.run.position[inside & blocks[np.minimum(block, len(blocks) - 1)]]
+    def off(self, blocks: Ints, inner: tuple[Ints, Floats], chord: float) -> Floats:
+        """Return how far some blocks (b,) are off, in what they may be: the straight block from the contact's tip along the face's normal,
+        against the chord error (mm), and its axis, which turns evenly, from the run's, against `ASTRAY`.
 
-    def _off(self, inner: Floats, travel: Floats, chord: float) -> Floats:
-        """Return how far each block (k - 1,) is off, in what it may be: the straight block from the contact's tip along the face's normal,
-        against the chord error, and its axis, which turns evenly, from the chosen one, against `ASTRAY`.
-
-        `inner` (m,): positions that are looked at beside `SHARES` of each block; travel (n,): how far the cutter has come at each contact.
+        `inner`: run and position (i,) in order that are looked at beside `SHARES` of each block.
         """
-        position, tip, axis = self.position, self.poses.tip, self.poses.axis
-        share = np.concatenate([position[:-1] + s * np.diff(position) for s in SHARES])
-        probe = np.concatenate([inner, share])
-        block = np.clip(np.searchsorted(position, probe, side="right") - 1, 0, len(position) - 2)
-        gone, ends = value_at(travel, probe), value_at(travel, position)
-        part = np.clip(
-            (gone - ends[block]) / np.maximum(ends[block + 1] - ends[block], tolerance.PARAMETRIC),
-            0.0,
-            1.0,
+        runs, position = self.runs, self.position
+        order, here = runs.order(*inner), runs.order(self.run, position)
+        low = np.searchsorted(order, here[blocks], side="left")
+        count = np.searchsorted(order, here[blocks + 1], side="left") - low
+        number = np.arange(len(blocks))
+        block = np.concatenate([np.repeat(number, count), *(number for _ in SHARES)])
+        width = position[blocks + 1] - position[blocks]
+        probe = np.concatenate(
+            [
+                inner[1][np.repeat(low, count) + _numbered(count)],
+                *(position[blocks] + share * width for share in SHARES),
+            ]
         )
-        turned = slerp(axis[block], axis[block + 1], part)
-        c = self.contacts
-        at, out = between(c.point, c.normal, c.feed, probe)
-        tip_at_block = tip[block] + part[:, None] * (tip[block + 1] - tip[block])
-        wanted = tip_at(self.tool, at + self.allowance * out, out, turned)
-        off = np.abs(((tip_at_block - wanted) * out).sum(axis=1))
-        astray = angle_between(turned, self.run.at(probe))
-        worst = np.zeros(len(position) - 1)
-        np.maximum.at(worst, block, np.maximum(off / chord, astray / ASTRAY))
+        start = blocks[block]
+        run, tip, axis = self.run[start], self.poses.tip, self.poses.axis
+        gone, begin, end = (
+            runs.travelled(run, at) for at in (probe, position[start], position[start + 1])
+        )
+        part = np.clip((gone - begin) / np.maximum(end - begin, tolerance.PARAMETRIC), 0.0, 1.0)
+        turned = slerp(axis[start], axis[start + 1], part)
+        at, out = runs.contact(run, probe)
+        tip_at_block = tip[start] + part[:, None] * (tip[start + 1] - tip[start])
+        wanted = tip_at(runs.tool, at + runs.allowance * out, out, turned)
+        far = np.abs(((tip_at_block - wanted) * out).sum(axis=1))
+        astray = angle_between(turned, runs.axis_at(run, probe))
+        worst = np.zeros(len(blocks))
+        np.maximum.at(worst, block, np.maximum(far / chord, astray / ASTRAY))
         return worst
+
+
+def poses_along(runs: AxisRuns, chord: float) -> RunPoses:
+    """Return where a cutter is along runs, in blocks as long as the chord error (mm) and the axes allow."""
+    made, inner = runs.begun(), runs.inner()
+    blocks = made.blocks()
+    for _ in range(HALVINGS):
+        # Only blocks that the last halving made are looked at: all others are good already, or too short.
+        worst = made.off(blocks, inner, chord)
+        size = np.linalg.norm(made.poses.tip[blocks + 1] - made.poses.tip[blocks], axis=1)
+        split = blocks[(worst > 1.0) & (size > 2.0 * tolerance.SHORT_MOVE)]
+        if not len(split):
+            break
+        middle = 0.5 * (made.position[split] + made.position[split + 1])
+        made = made.with_positions(made.run[split], middle)
+        first = split + np.arange(len(split))
+        blocks = np.column_stack([first, first + 1]).ravel()
+    return made
+
+
+def _numbered(count: Ints) -> Ints:
+    """Return 0, 1, 2 ... for each of some counts, one after the other."""
+    return np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
