@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 import samples
+from seeded.plates import plate
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.part.shape.plane_intersection import Tracer
+from trunnion.part.shape.section import SolidSlicer
 
 BOTH = pytest.mark.parametrize("suffix", ["step", "igs"])
 TOP = 60 * 36 - (36 * 20 - (4 - math.pi) * 4**2)
@@ -31,6 +33,15 @@ def test_a_bore_is_cut_to_an_exact_circle(suffix: str) -> None:
     region = samples.read(samples.drilled_block_shape(), suffix).section(WORLD, 7.0)
     assert region.area == pytest.approx(40 * 30 - math.pi * 16, abs=1e-6)
     assert region.pieces[0].holes[0].segments().radius == pytest.approx([4.0, 4.0])
+
+
+def test_an_arc_is_in_its_face_though_its_middle_is_right_beside_a_corner() -> None:
+    # A dome between four planes: the classifier's ray from the middle of each arc meets a corner of the face, and one was taken for out.
+    shape = cq.Shape.cast(plate(606).shape)
+    slicer = SolidSlicer(shape.wrapped, [face.wrapped for face in shape.Faces()])
+    along_x = Frame(origin=np.zeros(3), x=np.array([0.0, 0.0, -1.0]), z=np.array([1.0, 0.0, 0.0]))
+    low, middle, high = (slicer.section(along_x, 250.996996 + d).area for d in (-0.01, 0.0, 0.01))
+    assert low > middle > high > 0.99 * low
 
 
 @BOTH

@@ -44,7 +44,8 @@ _SAMPLES = 33
 _TRIES = 50
 _HALVINGS = 60
 _INSIDE = (0.5, 0.35, 0.65)
-"""Shares of an arc that are asked whether they lie in a face: the middle, or beside it where a seam runs through the middle."""
+"""Shares of a line or an arc at which a face is asked whether it holds them, two of three: one alone may be wrong, as the kernel's
+classifier is where the ray that it shoots goes through a corner of the face (the middle of an arc above one, say)."""
 Node = tuple[int, int]
 
 
@@ -104,6 +105,12 @@ class SectionFace:
             self.projection = ShapeAnalysis_Surface(BRep_Tool.Surface_s(self.view.face))
         uv = self.projection.ValueOfUV(gp_Pnt(*point.tolist()), tolerance.COINCIDENT)
         return self.view.holds(uv.X(), uv.Y())
+
+    def holds_most(self, points: Iterable[Floats]) -> bool:
+        """Return whether two of three points on the surface, which lie all inside the trimmed area or all outside, are found inside."""
+        first, second, third = points
+        found = self.holds(first)
+        return found if found == self.holds(second) else self.holds(third)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -320,7 +327,7 @@ def _on_line(face: SectionFace, plane: Plane, own: Nodes, along: Floats) -> list
     for track in tracks:
         track.sort(key=lambda item: float(item[1] @ along))
         for (a, p), (b, q) in pairwise(track):
-            if len(track) == 2 or face.holds(0.5 * (p + q)):
+            if len(track) == 2 or face.holds_most(p + share * (q - p) for share in _INSIDE):
                 links.append(SectionPiece(a, b, plane.flat(np.stack([p, q])), np.zeros(1)))
     return links
 
@@ -360,7 +367,9 @@ def _on_circles(
             key=lambda item: item[0],
         )
         if not [t for t in track if t[1][0] not in seams]:
-            if face.holds(_on(plane, centre, radius, track[0][0] + math.pi if track else 0.5)):
+            begin = track[0][0] if track else 0.5
+            whole = (_on(plane, centre, radius, begin + 2.0 * math.pi * s) for s in _INSIDE)
+            if face.holds_most(whole):
                 loops.append(Curve.circle(middle, radius))
             continue
         # A seam is no boundary: arcs go on across it.
@@ -369,7 +378,8 @@ def _on_circles(
         for k, (angle, node, point) in enumerate(track):
             after, other, target = track[(k + 1) % len(track)]
             sweep = after - angle + (2.0 * math.pi if k + 1 == len(track) else 0.0)
-            if face.holds(_on(plane, centre, radius, _clear_of(across, angle, sweep))):
+            inside = _clear_of(across, angle, sweep)
+            if face.holds_most(_on(plane, centre, radius, at) for at in inside):
                 links.append(
                     _arc(
                         node,
@@ -385,12 +395,12 @@ def _on_circles(
     return links, loops
 
 
-def _clear_of(seams: list[float], angle: float, sweep: float) -> float:
-    """Return an angle on an arc well inside it and off the seams, on which nobody can tell inside from outside."""
-    shares = np.array(_INSIDE)
-    at = angle + shares * sweep
-    off = [np.abs(np.sin(0.5 * (at - seam))) for seam in seams]
-    return float(at[int(np.argmax(np.min(off, axis=0)))] if off else at[0])
+def _clear_of(seams: list[float], angle: float, sweep: float) -> list[float]:
+    """Return angles on an arc well inside it, farthest first from the seams, on which nobody can tell inside from outside."""
+    inside = [angle + share * sweep for share in _INSIDE]
+    return sorted(
+        inside, key=lambda at: -min((abs(math.sin(0.5 * (at - s))) for s in seams), default=0.0)
+    )
 
 
 def _angle(vector: Floats) -> float:
