@@ -54,8 +54,8 @@ class LinkParameters:
     """How passes are linked: the `stepover` between them, the `safety` distance of rapids and the `lead_radius` in mm; `order` is "given"
     or "nearest"; `reversing` allows passes to be cut the other way where that is nearer; `chord` is the chord error of links, mm. With
     `arcs` a near pass is reached by the leads of both, and above the stock where these have no space: for walls, beside which a cutter that
-    follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm. `retreat` says how far
-    in mm a tool at a tip (3,) with an axis (3,) is fed along it before it goes on at rapid; None: not at all.
+    follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm. `retreats`
+    says how far (k,) in mm a tool at tips (k, 3) with axes (k, 3) is fed along them before it goes on at rapid; None: not at all.
     `query` says which straight moves between near passes of a leaning tool are clear: the others are lifted over."""
 
     stepover: float
@@ -66,7 +66,7 @@ class LinkParameters:
     chord: float = 2e-3
     arcs: bool = False
     overlap: float = 0.0
-    retreat: Callable[[Floats, Floats], float] | None = None
+    retreats: Callable[[Floats, Floats], Floats] | None = None
     query: ClearanceQuery | None = None
 
 
@@ -99,7 +99,8 @@ def linked(
             ]
         )
     else:
-        links = iter(_links(passes, near, drive, tool, parameters, progress.part(0.4, 0.9)))
+        links = iter(_links(passes, near, drive, tool, parameters, progress.part(0.4, 0.8)))
+    coming, leaving = _retreats(passes, near, leads_in, leads_out, parameters, progress)
     # Assemble: a near pass is linked on the surface, a far one by its leads and a travel through the air.
     blocks = _Blocks(tool, data, stock, setup, drive, parameters)
     for k, one in enumerate(passes):
@@ -109,11 +110,33 @@ def linked(
         else:
             if k:
                 blocks.feed(leads_out[k - 1], passes[k - 1].axis[-1], Mark.LEAD)
-            blocks.travel(leads_in[k][0], one.axis[0])
+            blocks.travel(leads_in[k][0], one.axis[0], leaving[k - 1] if k else 0.0, coming[k])
             blocks.feed(np.vstack([leads_in[k][1:], one.tip[:1]]), one.axis[0], Mark.LEAD)
         blocks.feed(one.tip, one.axis, Mark.CUT)
     blocks.feed(leads_out[-1], passes[-1].axis[-1], Mark.LEAD)
-    return blocks.finished()
+    return blocks.finished(leaving[-1])
+
+
+def _retreats(
+    passes: Sequence[Pass],
+    near: Bools,
+    leads_in: Floats,
+    leads_out: Floats,
+    parameters: LinkParameters,
+    progress: Progress,
+) -> tuple[list[float], list[float]]:
+    """Return how far in mm a tool comes at feed along its axis to the lead of each pass, and goes off after it; 0 where links join them."""
+    coming, leaving = np.zeros(len(passes)), np.zeros(len(passes))
+    if parameters.retreats is not None:
+        progress.at(0.8, "Linking passes")
+        begun, left = (np.flatnonzero(np.insert(~near, at, True)) for at in (0, len(passes) - 1))
+        for found, rows, lead, end, of_pass in (
+            (coming, begun, leads_in, 0, 0),
+            (leaving, left, leads_out, -1, -1),
+        ):
+            axes = np.array([passes[k].axis[of_pass] for k in rows.tolist()])
+            found[rows] = parameters.retreats(lead[rows, end], axes)
+    return coming.tolist(), leaving.tolist()
 
 
 class _Blocks:
@@ -130,7 +153,7 @@ class _Blocks:
     ) -> None:
         # A builder without a block: it answers how low the tip may go over the stock before the operation.
         self._air = PathBuilder(tool, data, stock, setup, parameters.safety)
-        self._retreat = parameters.retreat
+        self._has_retreats = parameters.retreats is not None
         self._thickness = max(STOCK_SHARE * data.depth, LEAST_STOCK)
         self._tool, self._data, self._drive = tool, data, drive
         held = [
@@ -163,29 +186,29 @@ class _Blocks:
                 (tips, np.broadcast_to(axis, tips.shape), Motion.LINE, self._data.feed, mark)
             )
 
-    def travel(self, position: Floats, axis: Floats) -> None:
-        """Bring the tip to a position (3,) through the air, at the end by a feed."""
+    def travel(self, position: Floats, axis: Floats, leaving: float, coming: float) -> None:
+        """Bring the tip to a position (3,) through the air, at the end by a feed; it goes off and comes at feed for so many mm at least."""
         stops = self._outside(position, axis)
         if self._parts and _is_upright(self.axis) and _is_upright(axis):
             self._lift(position)
         else:
             if self._parts:
-                self._leave()
+                self._leave(leaving)
                 if min(self.axis[2], axis[2]) < REORIENT:
                     self._rapid(self.here, UPRIGHT)
                     self._rapid(np.append(stops[-1][:2], self.here[2]), UPRIGHT)
             for stop in stops[::-1]:
                 self._rapid(stop, axis)
-            if self._retreat is not None:
-                self._rapid(self._off(position, axis, stops[0]), axis)
+            if self._has_retreats:
+                self._rapid(_towards(position, axis, stops[0], coming), axis)
         if _is_upright(axis):
             self._down(position)
         else:
             self._add(position, axis, Motion.LINE, self._data.feed, Mark.LEAD)
 
-    def finished(self) -> Toolpath:
-        """Return the path, its last block a retract to the clearance height."""
-        self._leave()
+    def finished(self, leaving: float) -> Toolpath:
+        """Return the path, its last block a retract to the clearance height; the tool goes off at feed for so many mm."""
+        self._leave(leaving)
         count = [len(p[0]) for p in self._parts]
         position, axis = (np.concatenate([p[k] for p in self._parts]) for k in (0, 1))
         motion, feed, mark = (np.repeat([p[k] for p in self._parts], count) for k in (2, 3, 4))
@@ -238,20 +261,14 @@ class _Blocks:
         else:
             self._add(position, UPRIGHT, Motion.LINE, self._data.plunge_feed, Mark.ENTRY)
 
-    def _leave(self) -> None:
+    def _leave(self, leaving: float) -> None:
         axis, stops = self.axis, self._outside(self.here, self.axis)
-        if self._retreat is not None:
-            self.feed(self._off(self.here, axis, stops[0])[None], axis, Mark.LEAD)
+        if self._has_retreats:
+            self.feed(_towards(self.here, axis, stops[0], leaving)[None], axis, Mark.LEAD)
         elif _is_upright(axis):
             self._rise(float(stops[0][2]))
         for stop in stops:
             self._rapid(stop, axis)
-
-    def _off(self, here: Floats, axis: Floats, stop: Floats) -> Floats:
-        """Return the position on the way along its axis to a stop (3,) up to which the tool is fed from here."""
-        far = max(float((stop - here) @ axis), 0.0)
-        lift = self._retreat(here, axis) if self._retreat is not None else 0.0
-        return np.asarray(here + min(lift, far) * axis)
 
     def _outside(self, here: Floats, axis: Floats) -> list[Floats]:
         """Return the positions that a tool passes along its axis from the work up to clearance: past blank and fixtures and up
@@ -280,6 +297,12 @@ class _Blocks:
 
     def _add(self, position: Floats, axis: Floats, motion: Motion, feed: float, mark: Mark) -> None:
         self._parts.append((np.asarray(position)[None], np.asarray(axis)[None], motion, feed, mark))
+
+
+def _towards(here: Floats, axis: Floats, stop: Floats, lift: float) -> Floats:
+    """Return the position so many mm along an axis from here, on the way to a stop (3,) at most."""
+    far = max(float((stop - here) @ axis), 0.0)
+    return np.asarray(here + min(lift, far) * axis)
 
 
 def _below(tool: Tool, upright: float) -> float:

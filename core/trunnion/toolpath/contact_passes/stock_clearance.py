@@ -98,17 +98,25 @@ class StockClearance:
             return (*found, query)
         return (*found, self.with_stock(query), *(() if self.drive.allowance > 0.0 else (query,)))
 
-    def retreat(self, tip: Floats, axis: Floats) -> float:
-        """Return how far in mm a tool at a tip (3,) goes out along its axis (3,) before the rest of the way is clear of everything."""
+    def retreats(self, tip: Floats, axis: Floats) -> Floats:
+        """Return how far (k,) in mm a tool at tips (k, 3) goes out along its axes (k, 3) before the rest of the way is clear of everything:
+        the first of `LIFTS` that is, or the last. Asked for all together: one pose alone costs nearly as much as a hundred."""
         assert self.drive.query_for is not None
-        lifts = np.array(LIFTS)
-        tips, axes = tip + lifts[:, None] * axis, np.tile(axis, (len(lifts), 1))
-        wide = grown(self.tool, self.thickness)
-        clear = self.drive.query_for(wide)(tips - self.thickness * axes, axes)
-        if self.beyond is not None:
-            clear &= self.beyond.is_free(_whole_body(self.tool, self.thickness), tips, axes)
+        tip, axis = (np.asarray(v, dtype=np.float64).reshape(-1, 3) for v in (tip, axis))
+        query = self.drive.query_for(grown(self.tool, self.thickness))
+        body = _whole_body(self.tool, self.thickness)
+        found, rows = np.full(len(tip), LIFTS[-1]), np.arange(len(tip))
         # Its body is nowhere slimmer than below: once it is clear it stays so.
-        return float(lifts[np.argmax(clear)] if clear.any() else lifts[-1])
+        for lift in LIFTS[:-1]:
+            axes = axis[rows]
+            tips = tip[rows] + lift * axes
+            clear = query(tips - self.thickness * axes, axes)
+            if self.beyond is not None:
+                clear &= self.beyond.is_free(body, tips, axes)
+            found[rows[clear]], rows = lift, rows[~clear]
+            if not len(rows):
+                break
+        return found
 
 
 def grown(tool: Tool, thickness: float) -> Tool:

@@ -244,7 +244,7 @@ def point(
         stepover=stepover,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
-        retreat=around.retreat,
+        retreats=around.retreats,
         query=query,
     )
     path, met = _linked(

@@ -163,8 +163,10 @@ def test_poses_are_asked_for_from_the_safest_to_those_clear_of_the_part_alone():
 
 def test_a_tool_goes_out_at_feed_until_it_has_left_the_stock():
     around = clearance(RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
-    assert around.retreat(np.array([25.0, 10.0, 0.0]), LEANING) == 0.0
-    assert around.retreat(np.array([8.0, 10.0, 1.0]), np.array(UPRIGHT)) >= 8.0
+    beside, below = around.retreats(
+        np.array([[25.0, 10.0, 0.0], [8.0, 10.0, 1.0]]), np.array([LEANING, UPRIGHT])
+    )
+    assert beside == 0.0 and below >= 8.0
 
 
 def test_a_grown_tool_is_nowhere_slimmer_than_below():
@@ -178,7 +180,13 @@ def test_a_leaning_tool_is_fed_off_and_onto_its_passes_as_far_as_demanded():
     drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=4))
     passes = [straight((5, 5, 0), (25, 5, 0), LEANING), straight((5, 20, 0), (25, 20, 0), LEANING)]
     path = linked(
-        passes, drive, BALL, DATA, stock, setup, replace(MANNER, retreat=lambda tip, axis: 4.0)
+        passes,
+        drive,
+        BALL,
+        DATA,
+        stock,
+        setup,
+        replace(MANNER, retreats=lambda tip, axis: np.full(len(tip), 4.0)),
     )
     rapid = np.flatnonzero(path.motion == Motion.RAPID)
     before = rapid[rapid > 0] - 1
