@@ -100,7 +100,7 @@ def linked(
         )
     else:
         links = iter(_links(passes, near, drive, tool, parameters, progress.part(0.4, 0.8)))
-    coming, leaving = _retreats(passes, near, leads_in, leads_out, parameters, progress)
+    approach, retract = _retreats(passes, near, leads_in, leads_out, parameters, progress)
     # Assemble: a near pass is linked on the surface, a far one by its leads and a travel through the air.
     blocks = _Blocks(tool, data, stock, setup, drive, parameters)
     for k, one in enumerate(passes):
@@ -110,11 +110,11 @@ def linked(
         else:
             if k:
                 blocks.feed(leads_out[k - 1], passes[k - 1].axis[-1], Mark.LEAD)
-            blocks.travel(leads_in[k][0], one.axis[0], leaving[k - 1] if k else 0.0, coming[k])
+            blocks.travel(leads_in[k][0], one.axis[0], retract[k - 1] if k else 0.0, approach[k])
             blocks.feed(np.vstack([leads_in[k][1:], one.tip[:1]]), one.axis[0], Mark.LEAD)
         blocks.feed(one.tip, one.axis, Mark.CUT)
     blocks.feed(leads_out[-1], passes[-1].axis[-1], Mark.LEAD)
-    return blocks.finished(leaving[-1])
+    return blocks.finished(retract[-1])
 
 
 def _retreats(
@@ -126,17 +126,17 @@ def _retreats(
     progress: Progress,
 ) -> tuple[list[float], list[float]]:
     """Return how far in mm a tool comes at feed along its axis to the lead of each pass, and goes off after it; 0 where links join them."""
-    coming, leaving = np.zeros(len(passes)), np.zeros(len(passes))
+    approach, retract = np.zeros(len(passes)), np.zeros(len(passes))
     if parameters.retreats is not None:
         progress.at(0.8, "Linking passes")
         begun, left = (np.flatnonzero(np.insert(~near, at, True)) for at in (0, len(passes) - 1))
         for found, rows, lead, end, of_pass in (
-            (coming, begun, leads_in, 0, 0),
-            (leaving, left, leads_out, -1, -1),
+            (approach, begun, leads_in, 0, 0),
+            (retract, left, leads_out, -1, -1),
         ):
             axes = np.array([passes[k].axis[of_pass] for k in rows.tolist()])
             found[rows] = parameters.retreats(lead[rows, end], axes)
-    return coming.tolist(), leaving.tolist()
+    return approach.tolist(), retract.tolist()
 
 
 class _Blocks:
@@ -186,29 +186,29 @@ class _Blocks:
                 (tips, np.broadcast_to(axis, tips.shape), Motion.LINE, self._data.feed, mark)
             )
 
-    def travel(self, position: Floats, axis: Floats, leaving: float, coming: float) -> None:
+    def travel(self, position: Floats, axis: Floats, retract: float, approach: float) -> None:
         """Bring the tip to a position (3,) through the air, at the end by a feed; it goes off and comes at feed for so many mm at least."""
         stops = self._outside(position, axis)
         if self._parts and _is_upright(self.axis) and _is_upright(axis):
             self._lift(position)
         else:
             if self._parts:
-                self._leave(leaving)
+                self._leave(retract)
                 if min(self.axis[2], axis[2]) < REORIENT:
                     self._rapid(self.here, UPRIGHT)
                     self._rapid(np.append(stops[-1][:2], self.here[2]), UPRIGHT)
             for stop in stops[::-1]:
                 self._rapid(stop, axis)
             if self._has_retreats:
-                self._rapid(_towards(position, axis, stops[0], coming), axis)
+                self._rapid(_towards(position, axis, stops[0], approach), axis)
         if _is_upright(axis):
             self._down(position)
         else:
             self._add(position, axis, Motion.LINE, self._data.feed, Mark.LEAD)
 
-    def finished(self, leaving: float) -> Toolpath:
+    def finished(self, retract: float) -> Toolpath:
         """Return the path, its last block a retract to the clearance height; the tool goes off at feed for so many mm."""
-        self._leave(leaving)
+        self._leave(retract)
         count = [len(p[0]) for p in self._parts]
         position, axis = (np.concatenate([p[k] for p in self._parts]) for k in (0, 1))
         motion, feed, mark = (np.repeat([p[k] for p in self._parts], count) for k in (2, 3, 4))
@@ -261,10 +261,10 @@ class _Blocks:
         else:
             self._add(position, UPRIGHT, Motion.LINE, self._data.plunge_feed, Mark.ENTRY)
 
-    def _leave(self, leaving: float) -> None:
+    def _leave(self, retract: float) -> None:
         axis, stops = self.axis, self._outside(self.here, self.axis)
         if self._has_retreats:
-            self.feed(_towards(self.here, axis, stops[0], leaving)[None], axis, Mark.LEAD)
+            self.feed(_towards(self.here, axis, stops[0], retract)[None], axis, Mark.LEAD)
         elif _is_upright(axis):
             self._rise(float(stops[0][2]))
         for stop in stops:
