@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from flat_parts import operation
 from milling import mill
 from trunnion.geometry.development import Development
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Revolved
-from trunnion.plan.development.drives import layer_heights, ring_of, tangent_reach
+from trunnion.plan.development.drives import (
+    GroundCutter,
+    layers_down,
+    layers_over,
+    ring_of,
+    tangent_reach,
+)
 from trunnion.plan.development.ground import DevelopedGround, ground_of
+from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.progress import NO_PROGRESS
 
 RADIUS, LENGTH, WIDE, HIGH = 100.0, 60.0, 20.0, 8.0
@@ -109,10 +119,38 @@ def test_what_is_free_within_an_area_is_what_is_free_of_it() -> None:
         assert free.minus(expected).area == pytest.approx(0.0, abs=1e-6)
 
 
-def test_layers_end_over_each_boss_with_its_allowance() -> None:
-    assert layer_heights(10.0, 0.3, 4.0, (8.0, 7.99), 0.3) == pytest.approx(
-        [8.3, 8.3 - 8.0 / 2.0, 0.3]
-    )
+def test_layers_are_a_step_thick_but_the_first_and_hold_the_tops_of_bosses() -> None:
+    found = layers_down(10.0, 0.3, 4.0, (8.0, 7.6, 7.59, 5.0, 0.0), 0.3)
+    heights = [height for layer in found for height in (layer.top, layer.bottom)]
+    assert heights == pytest.approx([10.0, 8.3, 8.3, 4.3, 4.3, 0.3])
+    # A top where a layer ends is cut with it, and of two nearly at one height the upper one counts.
+    assert [layer.tops for layer in found] == [(), pytest.approx((7.9, 5.3)), ()]
+
+
+def test_a_boss_is_cut_to_its_top_without_another_layer_all_round() -> None:
+    tool, whole = mill(10.0), ground()
+    choices = {
+        WALL_ALLOWANCE: 0.5,
+        FLOOR_ALLOWANCE: 0.3,
+        AROUND_TOOL: 1.0,
+        ABOVE_TOOL: 1.0,
+    }
+    rough = operation("rough", "pocket-01", tool, choices)
+    rough = replace(rough, data=replace(rough.data, depth=6.0))
+    # Over bent ground the level block is highest at its sides.
+    high = math.hypot(RADIUS + HIGH, 0.5 * WIDE) - RADIUS
+    first, top, second = layers_over(rough, whole, (high,), ()).levels
+    assert [first.top, first.bottom] == pytest.approx([whole.top, 6.3])
+    assert [top.top, top.bottom] == pytest.approx([whole.top, high + 0.3])
+    assert [second.top, second.bottom] == pytest.approx([6.3, 0.3])
+    # The block, its allowance and the corners that the cutter can't reach, from half a cutter's radius beside it.
+    block = Region.rectangle(-0.5 * WIDE, 30.0 - 0.5 * WIDE, 0.5 * WIDE, 30.0 + 0.5 * WIDE)
+    assert not block.minus(top.wanted).opened(0.05)
+    assert not top.wanted.minus(block.offset(0.5 + 0.5 * tool.radius + 0.2)).opened(0.05)
+    assert top.wanted.area < 0.2 * first.wanted.area
+    # An earlier cutter of the same size leaves nothing of it.
+    again = layers_over(rough, whole, (high,), (GroundCutter.of(rough),)).levels
+    assert not any(level.wanted for level in again)
 
 
 def test_a_disc_finishes_bent_ground_as_far_as_it_is_near_to_it() -> None:

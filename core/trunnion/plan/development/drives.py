@@ -28,6 +28,8 @@ HAIR = 0.05
 """mm: half the width up to which what is left along rims is none."""
 WORTH = 0.1
 """mm of the blank over a layer that is worth a pass."""
+NEARLY = 10.0 * tolerance.SEW
+"""mm: heights that differ by less are cut as one."""
 FLAT = 0.01
 """mm that a level disc may stay off bent ground and still have finished it."""
 BESIDE = 1.0
@@ -64,22 +66,31 @@ def ring_of(ground: DevelopedGround) -> Region:
     return ground.blank_over(WORTH).offset(BESIDE).intersect(ground.band(*ground.ends))
 
 
-def layer_heights(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layer:
+    """A layer over ground, from `top` down to `bottom` (mm), and the heights between, from the top down, to which bosses that end in it
+    are cut."""
+
+    top: float
+    bottom: float
+    tops: tuple[float, ...] = ()
+
+
+def layers_down(
     top: float, bottom: float, step: float, tops: Sequence[float], allowance: float
-) -> list[float]:
-    """Return the heights of layers from the top down, none thicker than a step: each boss's top ends one, its allowance kept."""
-    ends = sorted({z + allowance for z in tops if bottom < z + allowance < top}, reverse=True)
-    breaks = [top, *ends, bottom]
-    kept = [breaks[0]]
-    for z in breaks[1:]:
-        # Tops at nearly one height end one layer, the upper of them.
-        if kept[-1] - z > tolerance.SEW * 10.0 or z == bottom:
-            kept.append(z)
-    found: list[float] = []
-    for high, low in pairwise(kept):
-        count = max(1, math.ceil((high - low) / step - tolerance.COINCIDENT))
-        found += [high + (low - high) * (n + 1) / count for n in range(count)]
-    return found
+) -> list[Layer]:
+    """Return layers from the top down, all a step thick but the first, where the blank is narrowest; bosses' tops keep an allowance."""
+    count = max(1, math.ceil((top - bottom) / step - tolerance.COINCIDENT))
+    heights = [top, *(bottom + n * step for n in range(count - 1, -1, -1))]
+    ends = list[float]()
+    for z in sorted((z + allowance for z in tops), reverse=True):
+        # Tops at nearly one height are cut to the upper of them.
+        if not ends or ends[-1] - z > NEARLY:
+            ends.append(z)
+    return [
+        Layer(top=high, bottom=low, tops=tuple(z for z in ends if low + NEARLY < z < high - NEARLY))
+        for high, low in pairwise(heights)
+    ]
 
 
 def layers_over(
@@ -89,25 +100,23 @@ def layers_over(
     before: Sequence[GroundCutter],
 ) -> PlaneDrive:
     """Return layers from the blank down to the ground's allowance, without what earlier cutters cleared; `tops` are heights (mm) over the
-    ground from which on bosses are clear."""
+    ground from which on bosses are clear.
+
+    A layer goes round the bosses first, whole; what it leaves over those that end in it is then cut down to their tops, from its sides:
+    a layer of its own for each top would go over all of the ground again.
+    """
     floor, wall = number(operation, FLOOR_ALLOWANCE), number(operation, WALL_ALLOWANCE)
     mine = GroundCutter.of(operation)
-    levels, above = [], ground.top
-    for z in layer_heights(ground.top, floor, operation.data.depth, tops, floor):
-        boundary = _free(ground, z - floor, mine)
-        wanted = ground.blank_over(z + WORTH).intersect(boundary)
-        for earlier in before:
-            axis_region = _free(ground, z - floor, earlier).offset(
-                -earlier.tool.radius - earlier.allowance
-            )
-            if axis_region:
-                done = axis_region.offset(earlier.tool.radius + earlier.allowance + HAIR)
-                wanted = wanted.minus(done).opened(HAIR)
-        if before and wanted:
-            # What is left goes on into what is cleared, so that it is entered from there.
-            wanted = wanted.offset(0.5 * mine.tool.radius).intersect(boundary)
-        levels.append(DriveLevel(top=above, bottom=z, wanted=wanted, boundary=boundary))
-        above = z
+    levels = []
+    for layer in layers_down(ground.top, floor, operation.data.depth, tops, floor):
+        done = _cleared(ground, layer.bottom - floor, mine)
+        over = list[DriveLevel]()
+        for z in reversed(layer.tops):
+            level = _level(ground, layer.top, z, floor, mine, before, (done,))
+            over.append(level)
+            done = _cleared(ground, z - floor, mine)
+        whole = _level(ground, layer.top, layer.bottom, floor, mine, before)
+        levels += [whole, *(level for level in reversed(over) if level.wanted)]
     return PlaneDrive(
         feature=operation.feature,
         kind=operation.kind,
@@ -117,6 +126,34 @@ def layers_over(
         wall_allowance=wall,
         floor_allowance=0.0,
     )
+
+
+def _level(
+    ground: DevelopedGround,
+    top: float,
+    z: float,
+    floor: float,
+    mine: GroundCutter,
+    before: Sequence[GroundCutter],
+    cleared: Sequence[Region] = (),
+) -> DriveLevel:
+    """Return what a cutter cuts at a height: what of the blank stands there and no earlier cutter took, without what is cleared anyway."""
+    boundary = _free(ground, z - floor, mine)
+    wanted = ground.blank_over(z + WORTH).intersect(boundary)
+    cleared = [*cleared, *(_cleared(ground, z - floor, earlier) for earlier in before)]
+    for done in cleared:
+        wanted = wanted.minus(done).opened(HAIR)
+    if cleared and wanted:
+        # What is left goes on into what is cleared, so that it is entered from there.
+        wanted = wanted.offset(0.5 * mine.tool.radius).intersect(boundary)
+    return DriveLevel(top=top, bottom=z, wanted=wanted, boundary=boundary)
+
+
+def _cleared(ground: DevelopedGround, z: float, cutter: GroundCutter) -> Region:
+    """Return what a cutter clears at a height over ground, and a hair more."""
+    kept = cutter.tool.radius + cutter.allowance
+    axis_region = _free(ground, z, cutter).offset(-kept)
+    return axis_region.offset(kept + HAIR) if axis_region else axis_region
 
 
 def floor_over(

@@ -70,6 +70,9 @@ def rough(
     remaining: list[tuple[DriveLevel, float]] = []
     above, first = max(drive.top, drive.stock_top), True
     for n, level in enumerate(drive.levels):
+        if n and abs(level.top - drive.levels[n - 1].bottom) > tolerance.SEW:
+            # It doesn't go on below the level before: what stands over it is asked of the stock.
+            above, first = level.top, True
         heights = layers(
             above, level.bottom, data.depth, _horizontals(drive, n), drive.floor_allowance
         )
