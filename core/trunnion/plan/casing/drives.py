@@ -25,10 +25,13 @@ from trunnion.plan.freeform.keys import number
 from trunnion.plan.freeform.lands import STOCK, land_drive
 from trunnion.plan.freeform.surface_drives import space_from, surface_driven
 from trunnion.plan.holes.drive import hole_drive
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.progress import Progress
 
-ROUGH_CHORD, FINISH_CHORD = 0.02, 0.002
-"""mm: chord errors of circles about the axis while roughing, and while finishing."""
+ROUGH_CHORD, FINISH_CHORD = 0.05, 0.002
+"""mm: chord errors of circles about the axis while roughing, at most, and while finishing."""
+CHORD_SHARE = 1.0 / 6.0
+"""Of the least allowance that roughing leaves: its chord error at most."""
 
 
 CELLS, FINEST, COARSEST = 300.0, 0.5, 2.0
@@ -62,11 +65,19 @@ def plane_driven(
         drive = layers_over(operation, ground, boss_tops(ground), before)
     else:
         drive = floor_over(operation, ground, before, number(operation, STOCK))
-    rolling = rolling_on(ground, ROUGH_CHORD if operation.kind == ROUGH else FINISH_CHORD)
+    rolling = rolling_on(ground, _chord(operation))
     setup = flat_setup(scene.setup, ground)
     return OperationDrive(
         setup=setup, drive=drive, identity=(drive, ground.development), rolling=rolling
     )
+
+
+def _chord(operation: Operation) -> float:
+    """Return the chord error (mm) of an operation's circles about the axis."""
+    if operation.kind != ROUGH:
+        return FINISH_CHORD
+    least = min(number(operation, key) for key in (FLOOR_ALLOWANCE, WALL_ALLOWANCE))
+    return min(max(CHORD_SHARE * least, FINISH_CHORD), ROUGH_CHORD)
 
 
 def earlier_over(operation: Operation, scene: Scene) -> list[Operation]:
