@@ -1,4 +1,7 @@
-"""The operations on the holes of a casing: along their own axes, one for all equal holes of one direction."""
+"""The operations on the holes of a casing: along their own axes, one for all equal holes of one direction.
+
+What the setup does not reach, such as the lower flange's bolt circle under the upper flange, is made with the part turned over.
+"""
 
 from __future__ import annotations
 
@@ -38,9 +41,10 @@ SAME_SIZE = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CasingHole:
-    """A hole seen along its own axis, with the drills for its bore, or the end mills where no drill fits."""
+    """A hole seen along its own axis in the setup that makes it, with the drills for its bore, or the end mills where no drill fits."""
 
     feature: Feature
+    setup: str
     direction: Direction
     shape: HoleShape
     around: HoleSpace
@@ -49,55 +53,65 @@ class CasingHole:
 
 
 def casing_holes(state: CasingPlanState) -> tuple[CasingHole, ...]:
-    """Return the holes that are reached along their own axes; tell of the others."""
-    drilling, found = choose(DrillSettings, {}), []
-    settings = choose(HoleSettings, {})
-    spaces: dict[Direction, HoleSpace] = {}
+    """Return the holes that are reached along their own axes, in the setup or with the part turned over; tell of the others."""
+    found = list[CasingHole]()
+    other = state.turned_over()
+    spaces: dict[tuple[str, Direction], HoleSpace] = {}
     for feature in state.progress.each(state.recognition.of_kind(HOLE)):
-        direction = _outward(state, feature)
-        if direction not in spaces:
-            setup = cutting_setup(state.setup, direction, state.blank)
-            spaces[direction] = HoleSpace(
-                space=SetupSpace.of(state.part, state.recognition, state.blank, setup),
-                clearance=state.route.reach_clearance,
-            )
-        around = spaces[direction]
         try:
-            shape = hole_in(feature, state.recognition.frame, around.space.setup.frame)
-            if not around.is_open((shape.bore, *shape.counterbores)[-1]):
-                raise Refused(f"{feature.id}: the part covers its mouth")
+            found.append(_reached(state, feature, spaces))
         except Refused as reason:
-            state.findings.append(not_reached(feature, str(reason)))
-            continue
-        drills = drills_for(
-            shape.bore,
-            state.cutters("drill"),
-            around,
-            settings.diameter_tolerance,
-            drilling.breakthrough,
-        )
-        mills = (
-            Candidates(tools=())
-            if drills.tools
-            else mills_for(
-                shape.bore, state.cutters("finish"), around, shape.bore.top, drilling.breakthrough
-            )
-        )
-        if drills.hindered and not mills.tools:
-            # Bolt circles of the lower flange, under the upper one: they are drilled the other way up.
-            state.findings.append(not_reached(feature, f"{feature.id}: {drills.reason}"))
-            continue
-        found.append(
-            CasingHole(
-                feature=feature,
-                direction=direction,
-                shape=shape,
-                around=around,
-                drills=drills,
-                mills=mills,
-            )
-        )
+            try:
+                if other is None:
+                    raise
+                found.append(_reached(other, feature, spaces))
+            except Refused:
+                state.findings.append(not_reached(feature, str(reason)))
     return tuple(found)
+
+
+def _reached(
+    state: CasingPlanState, feature: Feature, spaces: dict[tuple[str, Direction], HoleSpace]
+) -> CasingHole:
+    """Return a hole as the setup makes it; `spaces` keeps what stands along directions. Raises `Refused` where the part is in the way."""
+    drilling, settings = choose(DrillSettings, {}), choose(HoleSettings, {})
+    direction = _outward(state, feature)
+    key = (state.setup.name, direction)
+    if key not in spaces:
+        setup = cutting_setup(state.setup, direction, state.blank)
+        spaces[key] = HoleSpace(
+            space=SetupSpace.of(state.part, state.recognition, state.blank, setup),
+            clearance=state.route.reach_clearance,
+        )
+    around = spaces[key]
+    shape = hole_in(feature, state.recognition.frame, around.space.setup.frame)
+    if not around.is_open((shape.bore, *shape.counterbores)[-1]):
+        raise Refused(f"{feature.id}: the part covers its mouth")
+    drills = drills_for(
+        shape.bore,
+        state.cutters("drill"),
+        around,
+        settings.diameter_tolerance,
+        drilling.breakthrough,
+    )
+    mills = (
+        Candidates(tools=())
+        if drills.tools
+        else mills_for(
+            shape.bore, state.cutters("finish"), around, shape.bore.top, drilling.breakthrough
+        )
+    )
+    if drills.hindered and not mills.tools:
+        raise Refused(f"{feature.id}: {drills.reason}")
+    return CasingHole(
+        feature=feature,
+        setup=state.setup.name,
+        direction=direction,
+        shape=shape,
+        around=around,
+        drills=drills,
+        mills=mills,
+    )
 
 
 def _outward(state: CasingPlanState, feature: Feature) -> Direction:
@@ -142,6 +156,7 @@ def plan_holes(state: CasingPlanState, stage: Stage, holes: Sequence[CasingHole]
             )
             continue
         key = (
+            hole.setup,
             tuple(round(v, 2 * SAME_SIZE) for v in hole.direction),
             round(part.diameter, SAME_SIZE),
             round(part.depth, SAME_SIZE),
@@ -174,6 +189,7 @@ def _add(
         "keeps clear of what stands around them.",
         direction=first.direction,
         others=tuple(h.feature.id for h, _, _ in group[1:]),
+        setup=first.setup,
     )
 
 

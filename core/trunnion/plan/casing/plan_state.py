@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from trunnion.findings import Finding
 from trunnion.geometry.arrays import Floats
@@ -27,7 +27,8 @@ from trunnion.shop import Shop, Stage
 
 @dataclass(slots=True, kw_only=True)
 class CasingPlanState:
-    """What is known while a casing's setup is planned; `grounds` are the bottoms laid flat, by their pockets."""
+    """What is known while a casing is planned in a setup; `grounds` are the bottoms laid flat, by their pockets. `next` is the setup of the
+    part turned over, where the machine takes it so: for what the first one does not reach."""
 
     part: Part
     mesh: Mesh
@@ -42,9 +43,14 @@ class CasingPlanState:
     settings: CasingRouteSettings
     cutting: CuttingSettings
     progress: Progress
+    next: Setup | None = None
     grounds: dict[str, DevelopedGround] = field(default_factory=dict)
     operations: list[Operation] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
+
+    def turned_over(self) -> CasingPlanState | None:
+        """Return what is known in the next setup, its operations and findings the same lists; None where there is none."""
+        return replace(self, setup=self.next, next=None) if self.next is not None else None
 
     def cutters(self, use: str) -> list[Tool]:
         """Return the catalogue's cutters for a use and the blank's material."""
@@ -71,8 +77,9 @@ class CasingPlanState:
         direction: Direction = UPRIGHT,
         others: tuple[str, ...] = (),
         kind: str = "",
+        setup: str = "",
     ) -> None:
-        """Add an operation of a stage, with data for a depth and a width (mm) of cut."""
+        """Add an operation of a stage, with data for a depth and a width (mm) of cut; in this setup where none is named."""
         kind = kind or stage.kind
         data = cutting_data(tool, self.material, self.machine, kind, self.cutting, depth, width)
         self.operations.append(
@@ -81,7 +88,7 @@ class CasingPlanState:
                 kind=kind,
                 strategy=stage.strategy,
                 feature=feature,
-                setup=self.setup.name,
+                setup=setup or self.setup.name,
                 tool=tool,
                 data=data,
                 faces=faces,

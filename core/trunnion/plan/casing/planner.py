@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.setup import Setup
 from trunnion.plan.casing.drives import holes_driven, plane_driven, sides_driven
 from trunnion.plan.casing.grounds import fine_mesh
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
@@ -19,6 +20,7 @@ from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
+from trunnion.plan.setups import SetupSettings, turned_over
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 
@@ -28,6 +30,16 @@ if TYPE_CHECKING:
 NEEDS_AXES = "bosses are milled along their own normals"
 LEANING = " that leans the tool by 90 degrees"
 """Why a machine without rotary axes is refused, and what they must do."""
+
+
+def _turned_over(job: RouteJob) -> Setup | None:
+    """Return the setup of the part turned over, or None where its machine does not take it."""
+    other = (
+        job.setups[1]
+        if len(job.setups) > 1
+        else turned_over(job.blank, job.settings_of(SetupSettings))
+    )
+    return None if too_large(job.blank, (other,), job.shop) else other
 
 
 class CasingPlanner:
@@ -68,6 +80,7 @@ class CasingPlanner:
             settings=job.settings_of(CasingRouteSettings),
             cutting=job.settings_of(CuttingSettings),
             progress=job.progress,
+            next=_turned_over(job),
         )
         return make_casing_route(state, plan)
 

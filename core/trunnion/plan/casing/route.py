@@ -8,6 +8,7 @@ from dataclasses import replace
 from trunnion.findings import face_tags, info, warning
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.setup import Setup
 from trunnion.plan.casing.boss_route import FILLET, SIDE_CUTTER, TOP_CUTTER, plan_boss
 from trunnion.plan.casing.bottom_route import (
     BOTTOM_CUTTER,
@@ -21,6 +22,8 @@ from trunnion.plan.casing.bottom_route import (
 )
 from trunnion.plan.casing.hole_route import RULES, casing_holes, plan_holes
 from trunnion.plan.casing.plan_state import CasingPlanState
+from trunnion.plan.flip import turned
+from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.process import process_of
 from trunnion.recognize.casing.kinds import BOSS, POCKET, PROFILE
 from trunnion.shop import Stage, TypicalPlan
@@ -59,19 +62,35 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
             for boss in state.recognition.of_kind(BOSS):
                 plan_boss(state, stage, boss)
     _add_turned(state)
+    setups = _setups(state)
     return process_of(
-        _in_order(state.operations, plan.stages),
+        _in_order(state.operations, plan.stages, [s.name for s in setups]),
         state.findings,
         plan=plan,
         material=state.material,
-        setups=(state.setup,),
+        setups=setups,
         shop=state.shop,
     )
 
 
-def _in_order(operations: Sequence[Operation], stages: Sequence[Stage]) -> list[Operation]:
-    """Return the operations, which stand in the order of the plan's stages, with what comes before each; within a stage those of one tool
-    follow each other, larger tools first where they rough."""
+def _setups(state: CasingPlanState) -> tuple[Setup, ...]:
+    """Return the setups that cut anything, at least the first, and tell how the part is turned for the next one."""
+    used = {o.setup for o in state.operations}
+    if state.next is None or state.next.name not in used:
+        return (state.setup,)
+    first, second = (
+        SetupSpace.of(state.part, state.recognition, state.blank, setup)
+        for setup in (state.setup, state.next)
+    )
+    state.findings.append(turned(first, second))
+    return (state.setup, state.next) if state.setup.name in used else (state.next,)
+
+
+def _in_order(
+    operations: Sequence[Operation], stages: Sequence[Stage], setups: Sequence[str]
+) -> list[Operation]:
+    """Return the operations, which stand in the order of the plan's stages, setup by setup with what comes before each; within a stage
+    those of one tool follow each other, larger tools first where they rough."""
     before = {s.name: set(s.after_all) | set(s.after) for s in stages}
     rank = {s.name: n for n, s in enumerate(stages)}
     first: dict[tuple[str, str], int] = {}
@@ -79,7 +98,12 @@ def _in_order(operations: Sequence[Operation], stages: Sequence[Stage]) -> list[
         first.setdefault((o.group, o.tool.name), n)
     ranked = sorted(
         enumerate(operations),
-        key=lambda e: (rank[e[1].group], first[e[1].group, e[1].tool.name], e[0]),
+        key=lambda e: (
+            setups.index(e[1].setup),
+            rank[e[1].group],
+            first[e[1].group, e[1].tool.name],
+            e[0],
+        ),
     )
     return [
         replace(
