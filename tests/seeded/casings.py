@@ -171,6 +171,35 @@ def short_ring() -> Any:
     return body.cut(shell.bore()).cut(_drilled(shell, bosses[0])).val().wrapped
 
 
+@cache
+def bolted_ring() -> Any:
+    """Return a ring with two bosses and a bolt circle in each flange: the upper flange hangs over the lower one's bolts."""
+    shell = Shell(radius=34.0, slope=0.0, length=90.0, wall=3.0, flange=5.0, rim=16.0, rib=0.0)
+    body = shell.solid()
+    for theta in (20.0, 200.0):
+        boss = MadeBoss(
+            outline="circle",
+            theta=theta,
+            z=45.0,
+            height=3.0,
+            tilt=0.0,
+            fillet=0.0,
+            sizes=(5.0, 5.0),
+            hole=0.0,
+        )
+        body = _with_boss(body, shell, boss)
+    return _bolted(body.cut(shell.bore()), shell, 6).val().wrapped
+
+
+def _bolted(body: Any, shell: Shell, count: int) -> Any:
+    """Return a casing with holes of D6 in the middle of both flanges, along its axis."""
+    for at, high in ((0.0, shell.at(0.0)), (shell.length - shell.flange, shell.at(shell.length))):
+        circle = cq.Workplane("XY").workplane(offset=at - 1.0)
+        around = circle.polarArray(high + 0.5 * shell.rim, 0.0, 360.0, count)
+        body = body.cut(around.circle(3.0).extrude(shell.flange + 2.0))
+    return body
+
+
 def _is_sound(made: MadeCasing) -> bool:
     """Return whether a casing's file holds a solid without faults."""
     with tempfile.TemporaryDirectory() as folder:
@@ -203,16 +232,7 @@ def _drawn(seed: int, draw: Random, most: int) -> MadeCasing:
         if boss.hole:
             body = body.cut(_drilled(shell, boss))
     if bolts:
-        pitch = min(shell.at(0.0), shell.at(shell.length)) + 0.5 * shell.rim
-        for at, high in (
-            (0.0, shell.at(0.0)),
-            (shell.length - shell.flange, shell.at(shell.length)),
-        ):
-            circle = cq.Workplane("XY").workplane(offset=at - 1.0)
-            pitch = high + 0.5 * shell.rim
-            body = body.cut(
-                circle.polarArray(pitch, 0.0, 360.0, bolts).circle(3.0).extrude(shell.flange + 2.0)
-            )
+        body = _bolted(body, shell, bolts)
     pieces = sum(2 if b.cut else 1 for b in bosses)
     counts = {
         "boss": pieces,

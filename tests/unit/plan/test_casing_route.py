@@ -7,8 +7,11 @@ import math
 import numpy as np
 import pytest
 
+import samples
+from seeded.casings import bolted_ring
 from subjects import own, part_of, until
 from trunnion.model.feature import Feature
+from trunnion.pipeline import Engine
 from trunnion.plan.casing.hole_route import outward_direction
 from trunnion.plan.tool_choice import Candidates
 
@@ -84,6 +87,29 @@ def test_what_is_left_on_faces_that_hang_over_is_what_roughing_leaves():
     # Not twice the depth of cut, the boss's height: that would keep necks off flanges that lean over a boss by all of it.
     sides = [o for o in routed().process.operations if o.strategy == "surface.waterline"]
     assert sides and all(o.choices["surface.overhang"] == 0.5 for o in sides)
+
+
+def test_bolts_under_the_upper_flange_are_drilled_with_the_part_turned_over():
+    engine = Engine()
+    session = engine.open(samples.written(bolted_ring(), name="bolted-ring"))
+    choices = {"setup.machine": "Trunnion 650"}
+    session = engine.run(engine.with_choices(session, choices), until="route")
+    process, part = session.process, engine.context.part
+    drilled = [o for o in process.operations if o.kind == "drill"]
+    assert [(o.setup, len(o.all_features)) for o in drilled] == [("S1", 6), ("S2", 6)]
+    assert [o.setup for o in process.operations] == sorted(o.setup for o in process.operations)
+    # Each setup drills the flange that is up in it, straight down.
+    up = [setup.frame.z @ session.recognition.frame.z for setup in session.setups]
+    assert up == pytest.approx([1.0, -1.0])
+    lower, upper = (
+        np.mean(
+            [session.recognition.frame.to_local(part.graph().sample_point)[t - 1] for t in o.faces]
+        )
+        for o in reversed(drilled)
+    )
+    assert lower < upper and all(o.direction == (0.0, 0.0, 1.0) for o in drilled)
+    codes = {f.code for f in process.findings}
+    assert "route.turned-over" in codes and "hole.not-reached" not in codes
 
 
 def test_a_hole_that_no_drill_gets_at_for_what_stands_around_is_left_to_another_setup(monkeypatch):
