@@ -44,6 +44,23 @@ def test_an_arc_is_in_its_face_though_its_middle_is_right_beside_a_corner() -> N
     assert low > middle > high > 0.99 * low
 
 
+@pytest.mark.parametrize("peak", [(13.3, 20.0), (0.25, 20.0)])
+def test_an_edge_that_comes_through_the_plane_between_its_samples_is_met_twice(peak) -> None:
+    # A crest that is 0.2 mm wide where it is cut, on an edge of 40 mm.
+    def height(x: float) -> float:
+        return peak[1] - (x - peak[0]) ** 2 / 100.0
+
+    crest = [(x, height(x)) for x in np.linspace(0.0, 40.0, 21).tolist()]
+    made = cq.Workplane("XZ").moveTo(0.0, 0.0).lineTo(*crest[0])
+    solid = made.spline(crest[1:], includeCurrent=True).lineTo(40.0, 0.0).close().extrude(-10.0)
+    slicer = SolidSlicer(solid.val().wrapped, [face.wrapped for face in solid.val().Faces()])
+    top = solid.val().BoundingBox(1e-9).zmax
+    low, high = slicer.section(WORLD, peak[1] - 1e-4).box()
+    assert top > peak[1] - 1e-4
+    assert (high - low)[0] == pytest.approx(2.0 * math.sqrt(100.0 * 1e-4), rel=0.1)
+    assert (high - low)[1] == pytest.approx(10.0)
+
+
 @BOTH
 def test_a_pocket_above_its_fillet_is_lines_and_four_arcs(suffix: str) -> None:
     region = samples.read(samples.block_with_pocket_shape(), suffix).section(WORLD, 15.0)

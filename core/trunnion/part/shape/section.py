@@ -43,6 +43,10 @@ from trunnion.progress import NO_PROGRESS, Progress
 _SAMPLES = 33
 _TRIES = 50
 _HALVINGS = 60
+NEAR_EXTREMES = 0.01
+"""Of how far an edge reaches across the plane: how much farther it may reach than its extremes tell."""
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+"""Golden section: the share of an interval that is kept where the least of something is looked for."""
 _INSIDE = (0.5, 0.35, 0.65)
 """Shares of a line or an arc at which a face is asked whether it holds them, two of three: one alone may be wrong, as the kernel's
 classifier is where the ray that it shoots goes through a corner of the face (the middle of an arc above one, say)."""
@@ -241,7 +245,9 @@ def _parameters_on(edge: SectionEdge, plane: Plane) -> list[float]:
     if edge.kind == GeomAbs_Circle:
         return _on_circle(edge, plane)
     heights = plane.above(edge.extremes)
-    return _on_curve(edge, plane) if heights.min() < 0.0 < heights.max() else []
+    # Across the axes the extremes are those of samples.
+    more = NEAR_EXTREMES * float(np.ptp(heights))
+    return _on_curve(edge, plane) if heights.min() < more and heights.max() > -more else []
 
 
 def _on_circle(edge: SectionEdge, plane: Plane) -> list[float]:
@@ -266,17 +272,54 @@ def _on_curve(edge: SectionEdge, plane: Plane) -> list[float]:
     """Return the parameters where a free edge meets the plane, ascending, by halving between samples of unlike side."""
     parameters = np.linspace(edge.first, edge.last, _SAMPLES)
     heights = plane.above(edge.points)
+    for at, height in _turning(edge, plane, parameters, heights):
+        row = int(np.searchsorted(parameters, at))
+        parameters, heights = np.insert(parameters, row, at), np.insert(heights, row, height)
     found = []
     for k in np.nonzero((heights[:-1] > 0.0) != (heights[1:] > 0.0))[0]:
         low, high, was = float(parameters[k]), float(parameters[k + 1]), heights[k] > 0.0
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
-            if (plane.above(np.array(edge.adaptor.Value(middle).Coord())) > 0.0) == was:
+            if (_height(edge, plane, middle) > 0.0) == was:
                 low = middle
             else:
                 high = middle
         found.append(0.5 * (low + high))
     return found
+
+
+def _turning(
+    edge: SectionEdge, plane: Plane, parameters: Floats, heights: Floats
+) -> list[tuple[float, float]]:
+    """Return parameter and height where an edge, all of whose samples near by lie on one side, comes through the plane and turns back.
+
+    Between samples a height goes past the one at its turn by an eighth of their second difference or so; what could meet the plane is
+    looked at more closely, by golden sections.
+    """
+    # Beyond its ends an edge is taken to go back the way it came: it may turn right beside them.
+    padded = np.pad(heights, 1, "reflect")
+    before, here, after = np.abs(padded[:-2]), np.abs(heights), np.abs(padded[2:])
+    turns = (np.sign(padded[:-2]) == np.sign(heights)) & (np.sign(padded[2:]) == np.sign(heights))
+    turns &= (here <= before) & (here <= after) & (3.0 * here < before + after)
+    found = []
+    for k in np.flatnonzero(turns).tolist():
+        sense = float(np.sign(heights[k]))
+        low, high = (float(parameters[n]) for n in (max(k - 1, 0), min(k + 1, len(heights) - 1)))
+        for _ in range(_HALVINGS):
+            a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+            if sense * _height(edge, plane, a) < sense * _height(edge, plane, b):
+                high = b
+            else:
+                low = a
+        at = 0.5 * (low + high)
+        height = _height(edge, plane, at)
+        if sense * height < 0.0:
+            found.append((at, height))
+    return found
+
+
+def _height(edge: SectionEdge, plane: Plane, parameter: float) -> float:
+    return float(plane.above(np.array(edge.adaptor.Value(parameter).Coord())))
 
 
 Nodes = list[tuple[Node, Floats]]

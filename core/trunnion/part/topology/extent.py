@@ -31,7 +31,7 @@ def edge_extremes(adaptor: Any, points: Floats) -> Floats:
         return points[[0, -1]]
     first, last = adaptor.FirstParameter(), adaptor.LastParameter()
     if kind != GeomAbs_Circle:
-        return np.array([adaptor.Value(t).Coord() for t in np.linspace(first, last, _STEPS)])
+        return _with_turns(adaptor, np.linspace(first, last, _STEPS))
     circle = adaptor.Circle()
     x, y = (
         np.array(circle.XAxis().Direction().Coord()),
@@ -45,6 +45,20 @@ def edge_extremes(adaptor: Any, points: Floats) -> Floats:
         np.cos(angle) * x + np.sin(angle) * y
     )
     return np.concatenate([points[[0, -1]], round_points])
+
+
+def _with_turns(adaptor: Any, parameters: Floats) -> Floats:
+    """Return points (k, 3) of a free edge at parameters, and those where its x, y or z turn between them: the vertex of the parabola
+    through the farthest sample and two beside it, which is off the edge's own by the fourth power of their distance."""
+    points = np.array([adaptor.Value(t).Coord() for t in parameters.tolist()])
+    rows = np.concatenate([points.argmin(axis=0), points.argmax(axis=0)])
+    rows = np.unique(np.clip(rows, 1, len(points) - 2))
+    before, here, after = points[rows - 1], points[rows], points[rows + 1]
+    bend = before - 2.0 * here + after
+    share = np.divide(0.5 * (before - after), bend, out=np.zeros_like(bend), where=bend != 0.0)
+    turns = parameters[rows, None] + np.clip(share, -1.0, 1.0) * (parameters[1] - parameters[0])
+    more = [adaptor.Value(t).Coord() for t in turns.ravel().tolist()]
+    return np.concatenate([points, np.array(more).reshape(-1, 3)])
 
 
 def face_box(
