@@ -6,14 +6,14 @@ import pytest
 
 import samples
 from releases import assert_released
-from seeded.casings import bolted_ring, short_ring, small_casing
+from seeded.casings import bolted_ring, ribbed_ring, short_ring, small_casing
 from trunnion.pipeline import Engine
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
-CHOICES = {"setup.machine": "Trunnion 650"}
+CHOICES = {"setup.machine": "Trunnion 650", "recognize.family": "casing"}
 
 
-@pytest.mark.parametrize("part", [short_ring, small_casing, bolted_ring])
+@pytest.mark.parametrize("part", [short_ring, small_casing, bolted_ring, ribbed_ring])
 def test_a_casing_is_released(part):
     engine = Engine()
     session = engine.open(samples.written(part(), name="casing"))

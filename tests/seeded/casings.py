@@ -191,6 +191,30 @@ def bolted_ring() -> Any:
     return _bolted(body.cut(shell.bore()), shell, 6).val().wrapped
 
 
+@cache
+def ribbed_ring() -> Any:
+    """Return a ring with a rib in the middle and a boss that the rib cuts in two, a round boss beside it."""
+    shell = Shell(radius=34.0, slope=0.0, length=60.0, wall=3.0, flange=5.0, rim=10.0, rib=9.0)
+    body = shell.solid()
+    for outline, theta, z, sizes, cut in (
+        ("rectangle", 20.0, 30.0, (12.0, 24.0, 2.0), True),
+        ("circle", 160.0, 15.0, (5.0, 5.0), False),
+    ):
+        boss = MadeBoss(
+            outline=outline,
+            theta=theta,
+            z=z,
+            height=4.0,
+            tilt=0.0,
+            fillet=0.0,
+            sizes=sizes,
+            hole=0.0,
+            cut=cut,
+        )
+        body = _with_boss(body, shell, boss)
+    return body.cut(shell.bore()).val().wrapped
+
+
 def _bolted(body: Any, shell: Shell, count: int) -> Any:
     """Return a casing with holes of D6 in the middle of both flanges, along its axis."""
     for at, high in ((0.0, shell.at(0.0)), (shell.length - shell.flange, shell.at(shell.length))):

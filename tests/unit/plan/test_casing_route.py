@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 import samples
-from seeded.casings import bolted_ring
+from seeded.casings import bolted_ring, ribbed_ring
 from subjects import own, part_of, until
 from trunnion.model.feature import Feature
 from trunnion.pipeline import Engine
 from trunnion.plan.casing.hole_route import outward_direction
+from trunnion.plan.freeform.lands import LATERAL
 from trunnion.plan.tool_choice import Candidates
 
 
@@ -110,6 +111,17 @@ def test_bolts_under_the_upper_flange_are_drilled_with_the_part_turned_over():
     assert lower < upper and all(o.direction == (0.0, 0.0, 1.0) for o in drilled)
     codes = {f.code for f in process.findings}
     assert "route.turned-over" in codes and "hole.not-reached" not in codes
+
+
+def test_a_boss_that_runs_into_a_rib_is_topped_up_to_the_rib():
+    engine = Engine()
+    session = engine.open(samples.written(ribbed_ring(), name="ribbed-ring"))
+    choices = {"setup.machine": "Trunnion 650", "recognize.family": "casing"}
+    process = engine.run(engine.with_choices(session, choices), until="route").process
+    assert "route.no-cutter" not in {f.code for f in process.findings}
+    lateral = {o.feature: o.choices[LATERAL] for o in process.operations if o.kind == "land"}
+    # The rib cuts a boss in two, whose tops end at its sides; the third stands alone.
+    assert sorted(lateral.values()) == [0.0, 0.0, 1.0]
 
 
 def test_a_hole_that_no_drill_gets_at_for_what_stands_around_is_left_to_another_setup(monkeypatch):

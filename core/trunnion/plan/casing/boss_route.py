@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -88,20 +89,9 @@ def _plan_top(state: CasingPlanState, stage: Stage, boss: Feature, ground: Devel
     direction = out_of(state, boss)
     tags = boss.with_role(TOP)
     space = space_along(state, direction)
-    wall = state.route.wall_allowance
-    clearances = LandClearances(
-        lateral=wall + BESIDE, around=wall + BESIDE, above=state.route.reach_clearance
-    )
     part_above = PartAbove(space, state.progress)
     lands = lands_of(space, tags)
-    tool = next(
-        (
-            t
-            for t in _end_mills(state)
-            if all(_covers(land, part_above.free(land.z, t, clearances), t) for land in lands)
-        ),
-        None,
-    )
+    tool, clearances = _top_cutter(state, part_above, lands)
     if tool is None or not lands:
         state.findings.append(_no_cutter(boss, tags, "covers its top beside what stands around it"))
         return
@@ -128,12 +118,31 @@ def _plan_top(state: CasingPlanState, stage: Stage, boss: Feature, ground: Devel
     )
 
 
+def _top_cutter(
+    state: CasingPlanState, part_above: PartAbove, lands: Sequence[Land]
+) -> tuple[Tool | None, LandClearances]:
+    """Return the largest end mill that covers a boss's top, and what it keeps; None where none does.
+
+    It stays off what stands beside, or goes right up to it where the top does: a rib that the boss runs into is turned, and done.
+    """
+    kept = state.route.wall_allowance + BESIDE
+    for lateral in (kept, 0.0):
+        clearances = LandClearances(lateral=lateral, around=kept, above=state.route.reach_clearance)
+        for tool in _end_mills(state):
+            if all(
+                _covers(land, part_above.free(land.z, tool, clearances), tool) for land in lands
+            ):
+                return tool, clearances
+    return None, clearances
+
+
 def _covers(land: Land, free: Region, tool: Tool) -> bool:
     """Return whether an end mill covers a land from positions that leave it some space to move."""
     axis_region = free.offset(-tool.radius - SPARE)
     if not axis_region:
         return False
-    done = axis_region.offset(tool.radius - tool.corner_radius).intersect(land.region)
+    flat = tool.radius - tool.corner_radius
+    done = axis_region.offset(SPARE).offset(flat).intersect(land.region)
     return done.area >= WHOLE * land.region.area
 
 
