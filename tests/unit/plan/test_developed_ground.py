@@ -125,6 +125,9 @@ def test_layers_are_a_step_thick_but_the_first_and_hold_the_tops_of_bosses() -> 
     assert heights == pytest.approx([10.0, 8.3, 8.3, 4.3, 4.3, 0.3])
     # A top where a layer ends is cut with it, and of two nearly at one height the upper one counts.
     assert [layer.tops for layer in found] == [(), pytest.approx((7.9, 5.3)), ()]
+    # Hardly over a layer's bottom it would stand in the way of it; hardly below, the layer leaves little more than its allowance.
+    over, below = (layers_down(10.0, 0.3, 4.0, (z,), 0.3) for z in (4.02, 3.98))
+    assert over[1].tops == pytest.approx((4.32,)) and not any(layer.tops for layer in below)
 
 
 def test_a_boss_is_cut_to_its_top_without_another_layer_all_round() -> None:

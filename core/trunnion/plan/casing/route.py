@@ -74,16 +74,18 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
 
 
 def _setups(state: CasingPlanState) -> tuple[Setup, ...]:
-    """Return the setups that cut anything, at least the first, and tell how the part is turned for the next one."""
+    """Return the setups that cut anything, or the first, and tell how the part is turned from one to the next."""
     used = {o.setup for o in state.operations}
     if state.next is None or state.next.name not in used:
         return (state.setup,)
+    if state.setup.name not in used:
+        return (state.next,)
     first, second = (
         SetupSpace.of(state.part, state.recognition, state.blank, setup)
         for setup in (state.setup, state.next)
     )
     state.findings.append(turned(first, second))
-    return (state.setup, state.next) if state.setup.name in used else (state.next,)
+    return (state.setup, state.next)
 
 
 def _in_order(

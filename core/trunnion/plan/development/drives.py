@@ -87,8 +87,13 @@ def layers_down(
         # Tops at nearly one height are cut to the upper of them.
         if not ends or ends[-1] - z > NEARLY:
             ends.append(z)
+    # What is hardly below a layer's bottom is cut with it; what is above it, however little, stands in its way.
     return [
-        Layer(top=high, bottom=low, tops=tuple(z for z in ends if low + NEARLY < z < high - NEARLY))
+        Layer(
+            top=high,
+            bottom=low,
+            tops=tuple(z for z in ends if low + tolerance.COINCIDENT < z < high - NEARLY),
+        )
         for high, low in pairwise(heights)
     ]
 
