@@ -1,5 +1,5 @@
 """What no route can be made for: open faces, machines without the axes that a part needs or with too little travel for its blank, and more
-tools than a magazine has places for."""
+tools than a magazine has places for; and the setups that a route can be made in."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
+from trunnion.plan.setups import SetupSettings, turned_over
 from trunnion.shop import Shop
 from trunnion.units import trimmed
 
@@ -80,3 +81,13 @@ def too_many_tools(
                 )
             )
     return found
+
+
+def both_sides(
+    setups: Sequence[Setup], blank: Blank, shop: Shop, settings: SetupSettings
+) -> Sequence[Setup]:
+    """Return the setups that features may be cut in: where there is one, the part turned over comes after it if its machine takes that."""
+    if len(setups) != 1:
+        return setups
+    other = turned_over(blank, settings)
+    return setups if too_large(blank, (other,), shop) else (*setups, other)

@@ -102,13 +102,13 @@ def test_bolts_under_the_upper_flange_are_drilled_with_the_part_turned_over():
     # Each setup drills the flange that is up in it, straight down.
     up = [setup.frame.z @ session.recognition.frame.z for setup in session.setups]
     assert up == pytest.approx([1.0, -1.0])
-    lower, upper = (
-        np.mean(
-            [session.recognition.frame.to_local(part.graph().sample_point)[t - 1] for t in o.faces]
-        )
-        for o in reversed(drilled)
+    graph = part.graph()
+    height = session.recognition.frame.to_local(graph.sample_point)[:, 2]
+    upper, lower = (
+        float(height[np.isin(graph.sample_face, [t - 1 for t in o.faces])].mean()) for o in drilled
     )
-    assert lower < upper and all(o.direction == (0.0, 0.0, 1.0) for o in drilled)
+    assert (lower, upper) == pytest.approx((2.5, 87.5), abs=1.0)
+    assert all(o.direction == (0.0, 0.0, 1.0) for o in drilled)
     codes = {f.code for f in process.findings}
     assert "route.turned-over" in codes and "hole.not-reached" not in codes
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.model.setup import Setup
 from trunnion.plan.casing.drives import holes_driven, plane_driven, sides_driven
 from trunnion.plan.casing.grounds import fine_mesh
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
@@ -14,13 +13,13 @@ from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.casing.route import CUTTER_RULES, make_casing_route
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.cutting.milling import CuttingSettings
-from trunnion.plan.feasibility import refuse_open, too_large, without_axes
+from trunnion.plan.feasibility import both_sides, refuse_open, too_large, without_axes
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.setups import SetupSettings, turned_over
+from trunnion.plan.setups import SetupSettings
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 
@@ -30,16 +29,6 @@ if TYPE_CHECKING:
 NEEDS_AXES = "bosses are milled along their own normals"
 LEANING = " that leans the tool by 90 degrees"
 """Why a machine without rotary axes is refused, and what they must do."""
-
-
-def _turned_over(job: RouteJob) -> Setup | None:
-    """Return the setup of the part turned over, or None where its machine does not take it."""
-    other = (
-        job.setups[1]
-        if len(job.setups) > 1
-        else turned_over(job.blank, job.settings_of(SetupSettings))
-    )
-    return None if too_large(job.blank, (other,), job.shop) else other
 
 
 class CasingPlanner:
@@ -66,21 +55,22 @@ class CasingPlanner:
                 (), findings, plan=plan, material=material, setups=job.setups, shop=job.shop
             )
         part = job.context.part
+        setup, *others = both_sides(job.setups, job.blank, job.shop, job.settings_of(SetupSettings))
         state = CasingPlanState(
             part=part,
             mesh=job.progress.aside(lambda _: fine_mesh(part)),
             context=job.context,
             recognition=job.recognition,
             blank=job.blank,
-            setup=job.setups[0],
+            setup=setup,
             material=material,
-            machine=job.shop.machine(job.setups[0].machine),
+            machine=job.shop.machine(setup.machine),
             shop=job.shop,
             route=route,
             settings=job.settings_of(CasingRouteSettings),
             cutting=job.settings_of(CuttingSettings),
             progress=job.progress,
-            next=_turned_over(job),
+            next=others[0] if others else None,
         )
         return make_casing_route(state, plan)
 

@@ -22,7 +22,7 @@ from trunnion.plan.cutting.milling import (
     roughing_width,
 )
 from trunnion.plan.cutting.power import DRILL
-from trunnion.plan.feasibility import too_large
+from trunnion.plan.feasibility import both_sides, too_large
 from trunnion.plan.flip import turned
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
@@ -55,7 +55,7 @@ from trunnion.plan.prismatic.regions import SectionSource, SetupSpace, parent_of
 from trunnion.plan.process import process_of
 from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.settings import HALVES, RouteSettings
-from trunnion.plan.setups import SetupSettings, turned_over
+from trunnion.plan.setups import SetupSettings
 from trunnion.plan.tool_choice import covered_by_few, depth_reached
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
@@ -124,7 +124,7 @@ def make_route(
             progress=progress,
             curved=partial(curved, setup) if curved is not None and freeform else None,
         )
-        for setup in _both_sides(setups, blank, shop, words)
+        for setup in both_sides(setups, blank, shop, choose(SetupSettings, words))
     ]
     operations: list[Operation] = []
     cut: list[Feature] = []
@@ -146,16 +146,6 @@ def make_route(
     used = {o.setup for o in operations} or {states[0].space.setup.name}
     kept = [state.space.setup for state in states if state.space.setup.name in used]
     return process_of(operations, findings, plan=plan, material=material, setups=kept, shop=shop)
-
-
-def _both_sides(
-    setups: Sequence[Setup], blank: Blank, shop: Shop, choices: Mapping[str, Value]
-) -> Sequence[Setup]:
-    """Return the setups that features may be cut in: where there is one, the part turned over comes after it."""
-    if len(setups) != 1:
-        return setups
-    other = turned_over(blank, choose(SetupSettings, choices))
-    return setups if too_large(blank, (other,), shop) else (*setups, other)
 
 
 def _with_cutters(

@@ -85,21 +85,16 @@ class AxisRuns:
 
     def contact(self, run: Ints, position: Floats) -> tuple[Floats, Floats]:
         """Return contact points and unit normals (k, 3) at positions (k,) of runs (k,)."""
-        row = self._row(run, position)
-        at = position - (row - self.first[run])
-        return between_rows(self.point, self.normal, self.feed, row, at)
+        return between_rows(self.point, self.normal, self.feed, *self._rows(run, position))
 
     def travelled(self, run: Ints, position: Floats) -> Floats:
         """Return how far (k,) the cutter has come at positions (k,) of runs (k,)."""
-        row = self._row(run, position)
-        at = position - (row - self.first[run])
-        return np.asarray(self.travel[row] + at * (self.travel[row + 1] - self.travel[row]))
+        row, share = self._rows(run, position)
+        return np.asarray(self.travel[row] + share * (self.travel[row + 1] - self.travel[row]))
 
     def axis_at(self, run: Ints, position: Floats) -> Floats:
         """Return the axes (k, 3) at positions (k,) of runs (k,)."""
-        own = self.order(
-            np.repeat(np.arange(len(self.first)), np.diff(self.start)), self.axis_position
-        )
+        _, own = self.axes_in_order()
         row = np.searchsorted(own, self.order(run, position), side="right") - 1
         row = np.clip(row, self.start[run], self.start[run + 1] - 2)
         before, after = self.axis_position[row], self.axis_position[row + 1]
@@ -135,10 +130,17 @@ class AxisRuns:
         order = np.argsort(self.order(run, position), kind="stable")
         return run[order], position[order]
 
-    def _row(self, run: Ints, position: Floats) -> Ints:
-        """Return the rows (k,) of the contacts that positions (k,) lie behind, never a line's last one."""
+    def axes_in_order(self) -> tuple[Ints, Floats]:
+        """Return the runs (m,) that the axes belong to, and the numbers (m,) that they go by in `order`."""
+        run = np.repeat(np.arange(len(self.first)), np.diff(self.start))
+        return run, self.order(run, self.axis_position)
+
+    def _rows(self, run: Ints, position: Floats) -> tuple[Ints, Floats]:
+        """Return the rows (k,) of the contacts that positions (k,) lie behind, never a line's last one, and the shares (k,) of the way from
+        there to the next."""
         row = self.first[run] + position.astype(np.int64)
-        return np.clip(row, self.first[run], self.last[run] - 1)
+        row = np.clip(row, self.first[run], self.last[run] - 1)
+        return row, position - (row - self.first[run])
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -176,8 +178,8 @@ class RunPoses:
     def axes_within(self, blocks: Ints) -> tuple[Ints, Floats]:
         """Return run and position (m,), in order, of the runs' axes between the ends of some blocks (b,)."""
         runs = self.runs
-        owner = np.repeat(np.arange(len(runs.first)), np.diff(runs.start))
-        own, here = runs.order(owner, runs.axis_position), runs.order(self.run, self.position)
+        owner, own = runs.axes_in_order()
+        here = runs.order(self.run, self.position)
         # Halves of halves may fall on an axis but for rounding: there is a pose already.
         low = np.searchsorted(own, here[blocks] + tolerance.PARAMETRIC)
         count = np.searchsorted(own, here[blocks + 1] - tolerance.PARAMETRIC) - low
