@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+from trunnion.settings import added
 
 CONTROL = "linuxcnc"
 """The control of a machine whose catalogue entry names none: the one that the program has always written for."""
@@ -70,6 +73,39 @@ class DrillingTable:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class TurningTable:
+    """What inserts bear in a group of materials, or in one: `name` is the group's or the material's.
+
+    Speeds vc m/min, feeds mm a revolution and depths of cut ap mm of roughing and finishing.
+    """
+
+    name: str
+    title: str
+    speed_rough: float
+    speed_finish: float
+    feed_rough: float
+    feed_finish: float
+    depth_rough: float
+    depth_finish: float
+    source: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkSpindle:
+    """The table or chuck of a machine where it turns the work as a spindle: speeds 1/min, power curve (rows: 1/min, kW) and the largest
+    diameter in mm that turns in it."""
+
+    low: float
+    high: float
+    power: tuple[tuple[float, float], ...]
+    largest_diameter: float
+
+    def power_at(self, spindle: float) -> float:
+        """Return the power in kW at a spindle speed, straight between the rows of the curve."""
+        return _power_at(self.power, spindle)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Axis:
     """One machine axis: limits and speeds in mm, mm/min, mm/s2 (degrees for rotary ones).
 
@@ -94,7 +130,7 @@ class Machine:
     """A machine: axes, spindle with its power curve (rows: 1/min, kW), largest feed mm/min, tool-change seconds and places, control.
 
     `control` is the registered name of the dialect that its programs are written in. Rotary axes that carry the same side stand in the
-    order from the machine's bed outwards: the second one rides on the first.
+    order from the machine's bed outwards: the second one rides on the first. A machine with a `work_spindle` turns.
     """
 
     name: str
@@ -107,16 +143,11 @@ class Machine:
     tool_change_s: float
     tool_places: int
     control: str = CONTROL
+    work_spindle: WorkSpindle | None = added(None)
 
     def power_at(self, spindle: float) -> float:
         """Return the power in kW at a spindle speed, straight between the rows of the curve."""
-        rows = self.power
-        if spindle <= rows[0][0]:
-            return rows[0][1] * spindle / rows[0][0]
-        for (n0, p0), (n1, p1) in itertools.pairwise(rows):
-            if spindle <= n1:
-                return p0 + (p1 - p0) * (spindle - n0) / (n1 - n0)
-        return rows[-1][1]
+        return _power_at(self.power, spindle)
 
     @property
     def rotary(self) -> tuple[Axis, ...]:
@@ -129,3 +160,13 @@ class Machine:
             if a.name == name:
                 return a
         raise KeyError(name)
+
+
+def _power_at(rows: Sequence[tuple[float, float]], spindle: float) -> float:
+    """Return the power in kW at a spindle speed in 1/min, straight between the rows of a curve and from nothing to its first one."""
+    if spindle <= rows[0][0]:
+        return rows[0][1] * spindle / rows[0][0]
+    for (n0, p0), (n1, p1) in itertools.pairwise(rows):
+        if spindle <= n1:
+            return p0 + (p1 - p0) * (spindle - n0) / (n1 - n0)
+    return rows[-1][1]

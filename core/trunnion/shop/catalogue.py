@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from trunnion.findings import BadInput
-from trunnion.model.material import DrillingTable, Machine, Material
+from trunnion.model.material import DrillingTable, Machine, Material, TurningTable
 from trunnion.model.tool import Tool, TurningTool
 from trunnion.settings import digest
 from trunnion.shop.cutters import Cutter, load_cutters, load_holders
@@ -17,7 +17,7 @@ from trunnion.shop.drilling import load_drilling
 from trunnion.shop.machines import load_machines
 from trunnion.shop.materials import load_materials
 from trunnion.shop.plans import TypicalPlan, load_plans
-from trunnion.shop.turning import load_turning
+from trunnion.shop.turning import load_turning, load_turning_data
 
 T = TypeVar("T")
 
@@ -27,7 +27,7 @@ class Shop:
     """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`).
 
     `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters. `drilling` says by
-    ISO 513 group or by material what drills bear.
+    ISO 513 group or by material what drills bear, `turning_data` what inserts do.
     """
 
     cutters: tuple[Cutter, ...]
@@ -36,6 +36,7 @@ class Shop:
     plans: Mapping[str, TypicalPlan]
     turning: tuple[TurningTool, ...] = ()
     drilling: Mapping[str, DrillingTable] = field(default_factory=dict)
+    turning_data: Mapping[str, TurningTable] = field(default_factory=dict)
 
     @property
     def tools(self) -> tuple[Tool, ...]:
@@ -53,6 +54,7 @@ class Shop:
             tuple(self.plans),
             self.turning,
             self.drilling,
+            self.turning_data,
         )
 
     def tools_for(self, iso_group: str, use: str) -> tuple[Tool, ...]:
@@ -70,6 +72,15 @@ class Shop:
             raise BadInput(
                 f"nothing is known of drilling {material.name}: add a table for it, or for the group {material.iso_group}, "
                 "to the drilling folder"
+            )
+        return found
+
+    def turning_for(self, material: Material) -> TurningTable:
+        """Return what inserts bear in a material: its own table, else that of its group; raise `BadInput` where there is neither."""
+        found = self.turning_data.get(material.name) or self.turning_data.get(material.iso_group)
+        if found is None:
+            raise BadInput(
+                f"nothing is known of turning {material.name}: add a table [data.{material.iso_group}] to the turning folder"
             )
         return found
 
@@ -108,6 +119,7 @@ def load_shop(user_folder: Path | None = None) -> Shop:
         plans=load_plans(user_folder),
         turning=load_turning(user_folder),
         drilling=load_drilling(user_folder),
+        turning_data=load_turning_data(user_folder),
     )
 
 

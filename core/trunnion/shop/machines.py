@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from trunnion import registry
-from trunnion.model.material import CONTROL, Axis, Machine
+from trunnion.model.material import CONTROL, Axis, Machine, WorkSpindle
 from trunnion.shop.reading import CatalogueEntry, by_name, entries
 from trunnion.units import FARTHEST, FASTEST
 
@@ -29,16 +29,7 @@ def load_machines(user_folder: Path | None) -> dict[str, Machine]:
 
 def _machine(entry: CatalogueEntry) -> Machine:
     spindle = entry.table("spindle")
-    low, high = spindle.number("low", 0.0, FASTEST), spindle.number("high", 1.0, FASTEST)
-    power = tuple((n, kw) for n, kw in spindle.rows("power", 2, 0.0, FASTEST))
-    if (
-        low >= high
-        or any(a[0] >= b[0] for a, b in pairwise(power))
-        or not all(n > 0.0 and 0.0 < kw <= _STRONGEST for n, kw in power)
-    ):
-        raise spindle.wrong(
-            "low must be below high, and the power curve rows [1/min, kW] must grow in speed"
-        )
+    low, high, power = _speeds(spindle)
     spindle.done()
     axes = tuple(_axis(table) for table in entry.tables("axes"))
     missing = {"X", "Y", "Z"} - {a.name for a in axes}
@@ -56,9 +47,44 @@ def _machine(entry: CatalogueEntry) -> Machine:
         tool_change_s=entry.number("tool_change_s", 0.0, FASTEST),
         tool_places=entry.count("tool_places", 1, 10_000),
         control=_control(entry),
+        work_spindle=_work_spindle(entry),
     )
     entry.done()
     return machine
+
+
+Power = tuple[tuple[float, float], ...]
+
+
+def _speeds(spindle: CatalogueEntry) -> tuple[float, float, Power]:
+    """Return the least and the highest speed of a spindle, and its power curve."""
+    low, high = spindle.number("low", 0.0, FASTEST), spindle.number("high", 1.0, FASTEST)
+    power = tuple((n, kw) for n, kw in spindle.rows("power", 2, 0.0, FASTEST))
+    if (
+        low >= high
+        or any(a[0] >= b[0] for a, b in pairwise(power))
+        or not all(n > 0.0 and 0.0 < kw <= _STRONGEST for n, kw in power)
+    ):
+        raise spindle.wrong(
+            "low must be below high, and the power curve rows [1/min, kW] must grow in speed"
+        )
+    return low, high, power
+
+
+def _work_spindle(entry: CatalogueEntry) -> WorkSpindle | None:
+    """Return the spindle that turns the work, None on a machine that doesn't turn."""
+    if "work_spindle" not in entry.fields:
+        return None
+    spindle = entry.table("work_spindle")
+    low, high, power = _speeds(spindle)
+    made = WorkSpindle(
+        low=low,
+        high=high,
+        power=power,
+        largest_diameter=spindle.number("largest_diameter", 1.0, FARTHEST),
+    )
+    spindle.done()
+    return made
 
 
 def _control(entry: CatalogueEntry) -> str:

@@ -6,6 +6,13 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+import shapely
+
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.plane.curve import Curve
+from trunnion.settings import added
+
 CORNERS = {
     "C": (80.0, 100.0, 80.0, 100.0),
     "D": (55.0, 125.0, 55.0, 125.0),
@@ -24,6 +31,8 @@ _NOMINAL = 0.05
 """mm: an edge this little short of whole millimetres is named by them: 10.998 is 11."""
 _NOSE = slice(8, 10)
 HANDS = ("right", "left")
+SEAT = 0.8
+"""Share of the way from an insert's middle to its outline that the holder under it takes: it stands back behind all edges."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,7 +112,8 @@ class TurningTool:
 
     `edge_angle` KAPR, degrees, from the direction of feed to the major cutting edge; `hand`; `shank_height` H, `shank_width` B,
     `functional_length` LF and `functional_width` WF in mm, from the shank's end and side to the tool's point. The point is where the
-    lines along and across the work's axis touch the nose.
+    lines along and across the work's axis touch the nose. The shank lies across the work's axis; that of an `inside` tool, a boring bar of
+    diameter B, along it: WF is from the bar's axis, and it cuts outwards. The head is `head_length` LH long, 0: as far as the insert goes.
     """
 
     number: int
@@ -117,6 +127,8 @@ class TurningTool:
     functional_width: float
     holder_name: str
     description: str = ""
+    inside: bool = added(False, written=False)
+    head_length: float = added(0.0, written=False)
 
     def __post_init__(self) -> None:
         if self.hand not in HANDS:
@@ -163,11 +175,68 @@ class TurningTool:
     def outline(self) -> tuple[tuple[float, float, float], ...]:
         """Return the insert as points (z, x, bulge) round it, seen on its rake face, the tool's point at (0, 0).
 
-        A right-hand tool feeds towards -z with the work below it (x < 0); a left-hand one is its mirror image. Bulge is the tangent of a
-        quarter of the arc's angle to the next point, positive where it is rounded outwards, 0 for a line.
+        A right-hand tool feeds towards -z with the work below it (x < 0); a left-hand one is its mirror image, an inside one has the work
+        above it. Bulge is the tangent of a quarter of the arc's angle to the next point, positive where it is rounded outwards, 0 for a
+        line.
         """
-        rows = _rounded(self.insert, self.edge_angle)
-        return rows if self.hand == "right" else tuple((-z, x, b) for z, x, b in rows)
+        along, out = self._senses
+        return tuple((along * z, out * x, b) for z, x, b in _rounded(self.insert, self.edge_angle))
+
+    @property
+    def _senses(self) -> tuple[float, float]:
+        """The senses along z and x that the tool lies in, seen from its point."""
+        return (1.0 if self.hand == "right" else -1.0), (-1.0 if self.inside else 1.0)
+
+    def insert_profile(self, chord: float) -> Floats:
+        """Return the insert's outline as points (m, 2) of x and z, convex, the tool's point at (0, 0); chords leave its noses by no more
+        than `chord` mm."""
+        rows = np.array(_rounded(self.insert, self.edge_angle))
+        # The way round is clockwise, so arcs that are rounded outwards are too.
+        closed = Curve(points=rows[:, :2], bulges=-rows[:, 2], closed=True)
+        along, out = self._senses
+        # What is turned along and across the axis is as large as the nose's own touching points say.
+        nose = (
+            self.insert.inscribed_circle / 2
+            if not self.insert.point_angle
+            else self.insert.nose_radius
+        )
+        points = np.vstack([closed.sampled(chord)[:-1, ::-1], [[nose, 0.0], [0.0, nose]]])
+        hull = shapely.convex_hull(shapely.multipoints(points))
+        return shapely.get_coordinates(hull)[:-1] * [out, along]
+
+    def holder_profiles(self) -> tuple[Floats, ...]:
+        """Return the holder's head, from under the insert to the shank, and its shank as convex outlines (m, 2) of x and z, the tool's
+        point at (0, 0)."""
+        insert = self.insert_profile(self.insert.nose_radius)
+        middle = 0.5 * (insert.min(axis=0) + insert.max(axis=0))
+        seat = middle + SEAT * (insert - middle)
+        along, out = self._senses
+        head = self.head_length or float(np.abs(insert).max())
+        if self.inside:
+            near, far = (
+                self.functional_width - self.shank_width / 2,
+                self.functional_width + self.shank_width / 2,
+            )
+            ends = np.array(
+                [
+                    [near, head],
+                    [far, head],
+                    [far, self.functional_length],
+                    [near, self.functional_length],
+                ]
+            )
+        else:
+            near, far = self.functional_width - self.shank_width, self.functional_width
+            ends = np.array(
+                [
+                    [head, near],
+                    [head, far],
+                    [self.functional_length, far],
+                    [self.functional_length, near],
+                ]
+            )
+        shank = ends * [out, along]
+        return np.vstack([seat, shank[:2]]), shank
 
     def header_sizes(self) -> tuple[tuple[str, float], ...]:
         """Return the lengths mm that a program's header names, each with the word before it."""
@@ -194,6 +263,8 @@ class TurningTool:
             "gauge_length": self.gauge_length,
             "holder_name": self.holder_name,
             "description": self.description,
+            "inside": self.inside,
+            "LH": self.head_length,
         }
 
 
