@@ -113,12 +113,11 @@ class Moves:
 
 
 def refuse_turning(sections: Iterable[ProgramSection]) -> None:
-    """Raise `BadInput` for a section that turns the work: nothing here can tell what it cuts."""
+    """Raise `BadInput` for a section that turns the work: `verify.turning` proves setups that turn all along."""
     for section in sections:
         if section.path.work_turns or not section.tool.rotates:
             raise BadInput(
-                f"operation {section.operation} turns the work: turning can't be proven yet, and what is not proven is not released; "
-                "suppress the operation or mill instead"
+                f"operation {section.operation} turns the work: a setup turns all along or mills all along; give it a setup of its own"
             )
 
 

@@ -1,4 +1,4 @@
-"""Turning work: its paths, what posts write of it, operations that hold turning tools, and that no proof passes it."""
+"""Turning work: its paths, what posts write of it, and operations that hold turning tools."""
 
 from __future__ import annotations
 
@@ -227,9 +227,9 @@ def test_the_setup_sheet_shows_turning_tools(tmp_path):
     assert "500 m/min, at most 2500" in page and "DCLNR2525M12" in page
 
 
-def test_no_proof_passes_turning():
+def test_the_proof_of_milling_takes_no_turning():
     milled = program_section(FLAT_16, [(0.0, 0.0, 30.0), (9.0, 0.0, 30.0)])
-    with pytest.raises(BadInput, match="operation face turns the work: turning can't be proven"):
+    with pytest.raises(BadInput, match="operation face turns the work: a setup turns all along"):
         proof(FACE)
     with pytest.raises(BadInput, match="operation face turns the work"):
         moves_of((milled, FACE))

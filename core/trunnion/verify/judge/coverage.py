@@ -20,6 +20,7 @@ from trunnion.verify.finish.accessibility import Accessibility
 from trunnion.verify.finish.coverage import Samples, on_blank
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.judge.sides import Side
+from trunnion.verify.judge.turned import TurningResidual
 from trunnion.verify.settings import ProofSettings
 
 DECIMALS = 9
@@ -49,13 +50,16 @@ def covered(
     progress: Progress = NO_PROGRESS,
     machines: Sequence[Machine] = (),
     unasked: Collection[int] = (),
+    turned: TurningResidual | None = None,
+    uncut: Blank | None = None,
 ) -> CoverageResult:
     """Return what all setups together finish of the part.
 
     `samples` are in the frame of the first side; `tags` (f,) those of the face rows; `tools` the catalogue's, tried from every side where
     something is not finished, as if nothing held the part. They lean where the side's own of `machines` does, which
     needs facets of all faces; without machines they are upright. Of faces of tags in `unasked`
-    nothing has to be finished, and nothing is told.
+    nothing has to be finished, and nothing is told. Where turning has come before, `blank` is what it left, `turned` what it has done to
+    the part and `uncut` the blank before it.
     """
     frame = sides[0].frame
     n = len(tags)
@@ -64,9 +68,11 @@ def covered(
     residual, blank_face = progress.aside(
         lambda _: (
             blank.depth(samples.point, frame),
-            on_blank(samples, blank, frame, n) | unasked_face,
+            on_blank(samples, uncut or blank, frame, n) | unasked_face,
         )
     )
+    if turned is not None:
+        residual = np.minimum(residual, turned.residual)
     for p in proofs:
         residual = np.minimum(residual, p.residual)
     finished = (np.abs(residual) <= settings.tolerance + settings.allowance) & ~blank_face[
@@ -80,16 +86,18 @@ def covered(
     )
     wanted = float(area[~blank_face].sum())
     reachable_area = wanted - float(away.sum())
-    gouge = np.max([np.zeros(n), *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
+    cut_before = turned.gouge if turned is not None else np.zeros(n)
+    gouge = np.max([cut_before, *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
+    is_cut = bool(proofs) or turned is not None
     every = progress.aside(
         lambda _: _faces(samples, tags, residual, area, done, away, gouge, blank_face, set(planned))
     )
     faces = tuple(f for f in every if f.face not in unasked)
     shown = ~unasked_face[samples.face]
-    coverage = round(float(done.sum()) / wanted, DECIMALS) if wanted and proofs else 0.0
+    coverage = round(float(done.sum()) / wanted, DECIMALS) if wanted and is_cut else 0.0
     of_reachable = (
         round(float(done.sum()) / reachable_area, DECIMALS)
-        if reachable_area > 0.0 and proofs
+        if reachable_area > 0.0 and is_cut
         else 0.0
     )
     return CoverageResult(

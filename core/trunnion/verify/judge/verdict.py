@@ -30,9 +30,18 @@ from trunnion.verify.judge.operations import block_proof, operation_proofs
 from trunnion.verify.judge.overload import load_findings
 from trunnion.verify.judge.setups import SetupProof, prove_setup, stock_of
 from trunnion.verify.judge.sides import sides_of
+from trunnion.verify.judge.turned import (
+    TurnedWork,
+    prove_turned,
+    turned_blocks,
+    turned_faces,
+    turned_findings,
+    turned_operations,
+)
 from trunnion.verify.machine.limits import limit_findings
 from trunnion.verify.motion import AXIS_LEAN, refuse_turning
 from trunnion.verify.settings import ProofSettings
+from trunnion.verify.turning.moves import in_order
 
 
 def prove(
@@ -50,24 +59,32 @@ def prove(
 
     `tools` are the catalogue's, for what could be reached at all; `machines` those of the programs, one each (without a program: the one
     that the part could be reached on); `planned_faces` the tags that some operation means to finish. Without a material nothing is said
-    of power. Raises `BadInput` for turning.
+    of power. Turning comes first, in setups of its own: raises `BadInput` where it comes later or the blank is none of revolution.
     """
-    refuse_turning(section for program in programs for section in program.sections)
+    turning = in_order(programs)
+    turned: TurnedWork | None = None
+    if turning:
+        whole = facets_of(part, blank.frame, progress=progress.part(0.0, 0.05))
+        turned = prove_turned(
+            programs[:turning], blank, machines[:turning], material, whole, progress.part(0.05, 0.1)
+        )
+        programs, machines = programs[turning:], machines[turning:]
     frames = [p.setup.frame for p in programs] or [blank.frame]
-    surfaces = [surfaces_of(part, f, progress.part(0.0, 0.05)) for f in frames]
-    facets = _facets(programs, part, frames, surfaces, machines, progress.part(0.05, 0.1))
+    surfaces = [surfaces_of(part, f, progress.part(0.1, 0.15)) for f in frames]
+    facets = _facets(programs, part, frames, surfaces, machines, progress.part(0.15, 0.2))
     return prove_surfaces(
         programs,
         surfaces,
-        blank,
+        turned.after if turned is not None else blank,
         tools,
         machines,
         settings,
-        progress.part(0.1, 1.0),
+        progress.part(0.2, 1.0),
         planned_faces,
         material,
         facets,
         part.backing,
+        turned,
     )
 
 
@@ -105,11 +122,13 @@ def prove_surfaces(
     material: Material | None = None,
     facets: Sequence[Facets] = (),
     unasked: Collection[int] = (),
+    turned: TurnedWork | None = None,
 ) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
 
     `facets` are the same faces as triangles, one each: without them no tool may lean. `unasked` are the tags of faces
-    that nobody wants finished: they are in the way of tools, and material. Raises `BadInput` for turning.
+    that nobody wants finished: they are in the way of tools, and material. `turned` is the turning before these programs, which has made
+    the blank what it is. Raises `BadInput` for turning among them.
     """
     refuse_turning(section for program in programs for section in program.sections)
     frames = [p.setup.frame for p in programs] or [blank.frame]
@@ -144,6 +163,10 @@ def prove_surfaces(
             "Judging the moves",
         )
         findings, offers = findings + noted, offers + offered
+    before = None
+    if turned is not None:
+        before = turned_faces(turned, samples, frames[0], len(surfaces[0].tag))
+        findings += turned_findings(turned, samples, frames[0], surfaces[0].tag, material, settings)
     whole = covered(
         samples,
         surfaces[0].tag,
@@ -156,6 +179,8 @@ def prove_surfaces(
         progress.part(0.8, 1.0),
         machines if facets else (),
         unasked,
+        before,
+        turned.before if turned is not None else None,
     )
     findings += whole.findings
     operations, blocks = progress.aside(
@@ -169,6 +194,9 @@ def prove_surfaces(
         ),
         "Judging the operations",
     )
+    if turned is not None:
+        operations = (*turned_operations(turned, settings), *operations)
+        blocks = (*turned_blocks(turned), *blocks)
     return Verdict(
         outcome=outcome_of(findings),
         coverage=whole.coverage,
