@@ -1,4 +1,4 @@
-"""What every registered strategy must do, whoever wrote it: ours, and those of packages in `tests/families`.
+"""What every registered strategy whose tool rotates must do, whoever wrote it: ours, and those of packages in `tests/families`.
 
 A strategy is looked at in an operation of a small part that uses it, after all that comes before; one that no small part's plan uses takes
 the place of an operation that is driven by the same class of geometry.
@@ -13,7 +13,16 @@ import numpy as np
 import pytest
 
 from holed import holed_plate
-from subjects import PLANNERS, STRATEGIES, check_cancel, check_settings, is_one_line, own, until
+from subjects import (
+    MILLING,
+    PLANNERS,
+    STRATEGIES,
+    check_cancel,
+    check_settings,
+    is_one_line,
+    own,
+    until,
+)
 from trunnion import registry
 from trunnion.model.motion.program import ProgramSection
 from trunnion.model.motion.toolpath import Motion
@@ -29,7 +38,7 @@ from trunnion.settings import choose
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 
-by_name = pytest.mark.parametrize("name", STRATEGIES)
+by_name = pytest.mark.parametrize("name", MILLING)
 DEAR = ("channel.rough", "channel.hub", "impeller")
 """Strategies and families whose paths take long: checks that make them several times, or prove them, are of the long tests."""
 
@@ -38,7 +47,7 @@ def dear_ones_long(names):
     return [pytest.param(n, marks=pytest.mark.long) if n in DEAR else n for n in names]
 
 
-by_name_often = pytest.mark.parametrize("name", dear_ones_long(STRATEGIES))
+by_name_often = pytest.mark.parametrize("name", dear_ones_long(MILLING))
 COARSE = {"surface.scallop": 0.3}
 """Scallops in mm for passes that nobody proves."""
 NOT_LESS = 0.95

@@ -13,9 +13,9 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.plane.arc_fitting import arcs_through
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.part.shape.arc_fitting import arcs_through
 from trunnion.part.topology.canonical import recognised, recognised_curve
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.identity import Shape

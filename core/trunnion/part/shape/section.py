@@ -29,9 +29,9 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.plane.arc_fitting import along_arcs, arcs_through
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
-from trunnion.part.shape.arc_fitting import along_arcs, arcs_through
 from trunnion.part.shape.plane_intersection import trace
 from trunnion.part.topology.canonical import CanonicalSurface, recognised
 from trunnion.part.topology.extent import edge_extremes, face_box

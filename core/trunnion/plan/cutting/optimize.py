@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from trunnion.model.material import Machine, Material
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.tool import TurningTool
 from trunnion.plan.cutting.drilling import AXIAL, drilling_data
 from trunnion.plan.cutting.milling import (
     ROUGHING,
@@ -26,9 +28,11 @@ from trunnion.plan.cutting.optimization.problem import CuttingProblem, Optimum
 from trunnion.plan.cutting.optimization.settings import OPTIMISED
 from trunnion.plan.cutting.peak import is_overload, with_peak
 from trunnion.plan.cutting.power import DRILL
+from trunnion.plan.cutting.turning import TURNING_FINISH, turning_data
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value, declared
 from trunnion.shop import Shop
+from trunnion.units import MM_PER_METRE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,6 +165,8 @@ def recomputed(
     if operation.by_hand:
         return operation
     machine = shop.machine(process.setup(operation.setup).machine)
+    if isinstance(operation.tool, TurningTool):
+        return turned_again(operation, operation.tool, material, shop, machine, settings)
     depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
     if operation.kind in ROUGHING and operation.kind != "face":
         depth = min(depth, roughing_depth(operation.cutter, material, settings))
@@ -184,5 +190,29 @@ def recomputed(
         depth,
         width,
         operation.data.widest,
+    )
+    return replace(operation, data=data)
+
+
+def turned_again(
+    operation: Operation,
+    tool: TurningTool,
+    material: Material,
+    shop: Shop,
+    machine: Machine,
+    settings: CuttingSettings,
+) -> Operation:
+    """Return a turning operation with the data of the tables under these limits; as it is where its machine doesn't turn."""
+    if machine.work_spindle is None:
+        return operation
+    now = operation.data
+    data = turning_data(
+        tool,
+        material,
+        shop.turning_for(material),
+        machine.work_spindle,
+        settings,
+        finish=operation.kind == TURNING_FINISH,
+        radius=0.5 * now.speed * MM_PER_METRE / (math.pi * now.spindle),
     )
     return replace(operation, data=data)

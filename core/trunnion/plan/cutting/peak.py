@@ -48,7 +48,10 @@ def with_peak(
     """Return an operation whose data know the peak of its load and keep the spindle's limit there where feed and depth can.
 
     `earlier` are the operations before it in its setup, `choices` a session's settings by full key. Data set by hand keep their numbers.
+    Turning meets no more than its data say: they keep the limit already.
     """
+    if not operation.tool.rotates:
+        return operation
     meets = _meets(operation, earlier, choices)
 
     def peak(data: CuttingData) -> Peak:

@@ -39,17 +39,20 @@ def _turn(a: Floats, b: Floats) -> Floats:
     return np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(axis=1))
 
 
-def arcs_through(points: Floats, within: float = tolerance.FITTED) -> tuple[Floats, Floats]:
+def arcs_through(
+    points: Floats, within: float = tolerance.FITTED, *, chords: bool = False
+) -> tuple[Floats, Floats]:
     """Return points (m, 2) out of `points` (k, 2), first and last among them, and bulges (m - 1,) of arcs that pass all within a distance.
 
-    Every arc goes through its two ends and the point in the middle between them, and is as long as the distance allows.
+    Every arc goes through its two ends and the point in the middle between them, and is as long as the distance allows. With `chords` the
+    straight lines between points count too: an arc does not stand for a corner between two of them.
     """
     kept, bulges, at = [0], [], 0
     while at < len(points) - 1:
         best, bulge, step = at + 1, 0.0, 2
         while True:
             end = min(at + step, len(points) - 1)
-            found = _arc(points[at : end + 1], within) if end > at + 1 else None
+            found = _arc(points[at : end + 1], within, chords) if end > at + 1 else None
             if found is None:
                 break
             best, bulge = end, found
@@ -59,7 +62,7 @@ def arcs_through(points: Floats, within: float = tolerance.FITTED) -> tuple[Floa
         low, high = best, min(at + step, len(points) - 1)
         while high - low > 1:
             middle = (low + high) // 2
-            found = _arc(points[at : middle + 1], within)
+            found = _arc(points[at : middle + 1], within, chords)
             if found is None:
                 high = middle
             else:
@@ -70,8 +73,9 @@ def arcs_through(points: Floats, within: float = tolerance.FITTED) -> tuple[Floa
     return points[kept], np.array(bulges)
 
 
-def _arc(points: Floats, within: float) -> float | None:
-    """Return the bulge of the line or arc from first to last point that passes all points within a distance, or None."""
+def _arc(points: Floats, within: float, chords: bool) -> float | None:
+    """Return the bulge of the line or arc from first to last point that passes all points, or their chords too, within a distance, or
+    None."""
     start, end = points[0], points[-1]
     chord = end - start
     size = math.hypot(*chord)
@@ -87,7 +91,8 @@ def _arc(points: Floats, within: float) -> float | None:
         return None
     k = (x * x + y * y - size * x) / (2.0 * y)
     radius = math.hypot(0.5 * size, k)
-    if np.abs(np.hypot(flat[:, 0] - 0.5 * size, flat[:, 1] - k) - radius).max() > within:
+    held = np.vstack([flat, 0.5 * (flat[1:] + flat[:-1])]) if chords else flat
+    if np.abs(np.hypot(held[:, 0] - 0.5 * size, held[:, 1] - k) - radius).max() > within:
         return None
     angles = np.unwrap(np.arctan2(flat[:, 1] - k, flat[:, 0] - 0.5 * size))
     sweep = float(angles[-1] - angles[0])

@@ -1,0 +1,1 @@
+"""Strategies of turning: the work turns, an insert goes along its meridian."""
