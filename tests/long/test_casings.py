@@ -23,3 +23,14 @@ def test_a_casing_is_released(part, coverage):
     session = engine.open(samples.written(part(), name="casing"))
     session = engine.run(engine.with_choices(session, CHOICES))
     assert_released(session, coverage=coverage)
+
+
+@pytest.mark.parametrize("part", [short_ring, bolted_ring])
+def test_a_casing_is_turned_and_milled_from_a_bored_blank(part):
+    engine = Engine()
+    session = engine.open(samples.written(part(), name="casing"))
+    words = {**CHOICES, "blank.kind": "turned", "blank.bored": True}
+    session = engine.run(engine.with_choices(session, words))
+    assert_released(session, coverage=0.99)
+    turned = [o for o in session.process.operations if not o.tool.rotates]
+    assert {o.setup for o in turned} == {"S1", "S2"}

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from trunnion import registry, tolerance
-from trunnion.findings import BadCall, Finding, Fix, Refused, error, info
+from trunnion.findings import BadCall, Finding, Refused
 from trunnion.geometry.frame import Frame
 from trunnion.model.material import Material
 from trunnion.model.motion.toolpath import Motion, Toolpath
@@ -23,7 +23,9 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.planning.scene import SessionContext, SetupScene
+from trunnion.pipeline.turning import empty_path, refused, turned_path
 from trunnion.plan.contract import DriveNeeds, Planner, ToolAxis, planner_for
+from trunnion.plan.turning.drive import RevolvedDrive
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
@@ -50,20 +52,21 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
     planner, parts = planner_for(session.recognition.family), SessionContext(context, session)
     material = context.shop.material(session.process.material)
     total = sum(len(session.process.of_setup(setup.name)) for setup in session.setups)
-    # What one setup leaves is the next one's stock, whatever side it looks from.
-    stock = StockViews(session.blank)
+    # What one setup leaves is the next one's stock, whatever side it looks from; what turning leaves is a blank of its own.
+    blank = session.blank
+    stock = StockViews(blank)
     with progress.in_turn() as beside:
         for setup in session.setups:
             scene = SetupScene(
                 context=parts,
                 recognition=session.recognition,
-                blank=session.blank,
+                blank=blank,
                 setup=setup,
                 process=session.process,
                 fixtures=session.fixtures_of(setup.name),
                 handed_on=stock,
             )
-            loaded = LoadStock(session.blank, setup.frame)
+            loaded = LoadStock(blank, setup.frame)
             for operation in session.process.of_setup(setup.name):
                 begin, end = (len(laid) + n for n in (0, 1))
                 text = f"toolpath of {operation.id}"
@@ -75,6 +78,9 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
                     beside(partial(_load, made.path, setup.frame, operation, loaded, material))
                 )
                 laid.append(made)
+            if scene.blank is not blank:
+                blank = scene.blank
+                stock = StockViews(blank)
         progress.doing("measuring the load")
         return tuple(_with_load(made, load()) for made, load in zip(laid, loads, strict=True))
 
@@ -103,7 +109,10 @@ def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
 def _make_one(
     session: Session, planner: Planner, scene: SetupScene, operation: Operation, progress: Progress
 ) -> OperationPath:
-    strategy, cutter = registry.get(STRATEGIES, operation.strategy), operation.cutter
+    strategy = registry.get(STRATEGIES, operation.strategy)
+    if strategy.drive is RevolvedDrive:
+        return turned_path(session, planner, scene, operation, progress)
+    cutter = operation.cutter
     settings = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
     needs = DriveNeeds(
         drive=strategy.drive,
@@ -130,13 +139,7 @@ def _make_one(
         )
         kept = session.path_of(operation.id)
         if drive.is_empty:
-            nothing = info(
-                "toolpath.nothing-left",
-                f"{operation.id}: nothing stands there any more that it could cut",
-                operation.id,
-                remedy="suppress it",
-            )
-            kept = OperationPath(operation=operation.id, findings=(nothing,), key=key)
+            kept = empty_path(operation, key)
         if kept is None or kept.key != key:
             planned: Any = strategy(
                 drive,
@@ -161,14 +164,7 @@ def _make_one(
         if driven.findings:
             kept = replace(kept, findings=_with(driven.findings, kept.findings))
     except Refused as reason:
-        refusal = error(
-            "toolpath.refused",
-            str(reason),
-            operation.id,
-            operation.feature,
-            fix=Fix(kind="smaller_tool", operation=operation.id, reason="toolpath.refused"),
-        )
-        return OperationPath(operation=operation.id, findings=(refusal,))
+        return refused(operation, reason)
     if len(kept.path) and rolling is not None:
         flat = laid_flat(kept.path, rolling.development, scene.setup.frame)
         scene.sides.cut_over(rolling, flat, cutter, progress.part(1.0, 1.0))

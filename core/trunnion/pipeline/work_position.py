@@ -21,7 +21,7 @@ def work_positions_of(session: Session, machines: Mapping[str, Machine]) -> Work
         return {}
     setups = (held(s, session.fixtures_of(s.name), session.blank) for s in session.setups)
     return {
-        s.name: work_position_of(session.blank, s, machines[s.machine])
+        s.name: work_position_of(s.begins_with(session.blank), s, machines[s.machine])
         for s in setups
         if s.machine in machines
     }

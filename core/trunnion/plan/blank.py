@@ -177,6 +177,16 @@ def make_envelope(
 def make_ring_turned(frame: Frame, mesh: Mesh, graph: FaceGraph, material: Material) -> Revolved:
     """Return what is left of a part's surroundings, its mesh in the part's coordinates, when all that turning about the frame's z reaches
     is turned to size: faces of revolution are done, rings stand where other features rise from them."""
+    return Revolved(
+        frame=frame,
+        outline=ring_turned_outline(frame, mesh, graph),
+        material=material.name,
+        density=material.density,
+    )
+
+
+def ring_turned_outline(frame: Frame, mesh: Mesh, graph: FaceGraph) -> Floats:
+    """Return the outline (k, 2) of that blank: radius and height about the frame's z in mm, anticlockwise."""
     turned = of_revolution(graph, RevolutionAxis(point=frame.origin, direction=frame.z))
     outline = turned_state(
         frame.to_local(mesh.points),
@@ -184,12 +194,7 @@ def make_ring_turned(frame: Frame, mesh: Mesh, graph: FaceGraph, material: Mater
         mesh.face,
         *round_and_straight(turned, graph.surface),
     )
-    return Revolved(
-        frame=frame,
-        outline=np.round(outline, DECIMALS),
-        material=material.name,
-        density=material.density,
-    )
+    return np.round(outline, DECIMALS)
 
 
 def make_finish_turned(

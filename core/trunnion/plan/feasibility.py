@@ -67,15 +67,17 @@ def too_large(blank: Blank, setups: Sequence[Setup], shop: Shop) -> list[Finding
 def too_many_tools(
     operations: Sequence[Operation], setups: Sequence[Setup], shop: Shop
 ) -> list[Finding]:
-    """Return a warning for each machine whose magazine does not take the tools of the plan."""
-    count, found = len({o.tool.name for o in operations}), []
+    """Return a warning for each setup whose machine's magazine does not take the tools of all that the plan does on it."""
+    machine_of = {s.name: s.machine for s in setups}
+    found = []
     for setup in setups:
         machine = shop.machine(setup.machine)
+        count = len({o.tool.name for o in operations if machine_of.get(o.setup) == setup.machine})
         if count > machine.tool_places:
             found.append(
                 warning(
                     "route.tool-places",
-                    f"{count} tools are planned, {machine.name} has {machine.tool_places} places",
+                    f"{count} tools are planned on {machine.name}, which has {machine.tool_places} places",
                     setup.name,
                     remedy="load tools by hand or choose another machine",
                 )

@@ -58,6 +58,11 @@ class SetupSettings:
     )
 
 
+def work_offset(settings: SetupSettings, number: int) -> str:
+    """Return the word of the work offset of a setup, counted from 0."""
+    return f"G{min(settings.work_offset + number, 59)}"
+
+
 def make_setups(
     recognition: Recognition, blank: Blank, settings: SetupSettings
 ) -> tuple[Setup, ...]:
@@ -103,7 +108,7 @@ def _setup(n: int, frame: Frame, blank: Blank, settings: SetupSettings) -> Setup
     return Setup(
         name=f"S{n + 1}",
         frame=offset,
-        work_offset=f"G{min(settings.work_offset + n, 59)}",
+        work_offset=work_offset(settings, n),
         clearance=float(high[2] - z + settings.clearance),
         machine=(settings.next_machine if n else "") or settings.machine,
     )

@@ -71,7 +71,15 @@ class Playback:
         )
         if not any(p.sections for p in programs):
             raise BadCall("no toolpaths yet: generate them first")
-        self.blank = session.blank
+        # What turns is not played: the first setup that mills begins with what turning leaves.
+        milling = [
+            k for k, p in enumerate(programs) if not any(s.path.work_turns for s in p.sections)
+        ]
+        if not milling:
+            raise BadCall("turning can't be played back: nothing else is programmed")
+        programs = tuple(programs[k] for k in milling)
+        files = tuple(files[k] for k in milling) if files else files
+        self.blank = programs[0].setup.begins_with(session.blank)
         bundles = bundles_of(programs, self.blank, checked(choose(ProofSettings, session.choices)))
         self.cell = cell or float(np.max(self.blank.size)) / (
             FINENESS if bundles == ("z",) else COARSER

@@ -45,3 +45,9 @@ class CasingRouteSettings:
         label="Reach",
         help="Share of a bottom that its cutter must reach; the largest that does is taken, smaller ones cut the rest.",
     )
+    lathe: str = setting(
+        "",
+        label="Turning machine",
+        catalogue="machines",
+        help="Name of the machine that turns a blank which does not come turned; empty: the smallest of the catalogue that does.",
+    )

@@ -15,6 +15,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.part import Part
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
+from trunnion.plan.casing.turning_route import TurnedRoute
 from trunnion.plan.contract import PartContext
 from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
 from trunnion.plan.development.ground import DevelopedGround
@@ -28,7 +29,8 @@ from trunnion.shop import Shop, Stage
 @dataclass(slots=True, kw_only=True)
 class CasingPlanState:
     """What is known while a casing is planned in a setup; `grounds` are the bottoms laid flat, by their pockets. `next` is the setup of the
-    part turned over, where the machine takes it so: for what the first one does not reach."""
+    part turned over, where the machine takes it so: for what the first one does not reach. `turned` is the turning before them, where the
+    blank did not come turned."""
 
     part: Part
     mesh: Mesh
@@ -44,6 +46,7 @@ class CasingPlanState:
     cutting: CuttingSettings
     progress: Progress
     next: Setup | None = None
+    turned: TurnedRoute | None = None
     grounds: dict[str, DevelopedGround] = field(default_factory=dict)
     operations: list[Operation] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from trunnion.model.operation import Operation
@@ -11,6 +12,7 @@ from trunnion.plan.casing.grounds import fine_mesh
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.casing.route import CUTTER_RULES, make_casing_route
+from trunnion.plan.casing.turning_route import after_turning, plan_turned, revolved_driven
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.feasibility import both_sides, refuse_open, too_large, without_axes
@@ -19,7 +21,9 @@ from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
-from trunnion.plan.setups import SetupSettings
+from trunnion.plan.setups import SetupSettings, make_setups
+from trunnion.plan.turning.drive import RevolvedDrive
+from trunnion.plan.turning.settings import TurningSettings
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 
@@ -35,7 +39,7 @@ class CasingPlanner:
     """Plans the milled side of a casing: bottoms laid flat, bosses along their normals, holes along their axes."""
 
     name, noun = "casing", "casings"
-    settings: tuple[type, ...] = (RouteSettings, CasingRouteSettings)
+    settings: tuple[type, ...] = (RouteSettings, CasingRouteSettings, TurningSettings)
     cutter_rules: tuple[str, ...] = CUTTER_RULES
 
     def can_plan(self, part: Part) -> None:
@@ -47,21 +51,32 @@ class CasingPlanner:
         route = job.settings_of(RouteSettings)
         plan = typical_plan(job.shop, job.recognition.family, route.plan, CUTTER_RULES)
         material = job.shop.material(job.blank.material)
-        findings = too_large(job.blank, job.setups, job.shop) or without_axes(
-            job.recognition, job.setups, job.shop, NEEDS_AXES, LEANING
+        turned = plan_turned(replace(job, progress=job.progress.part(0.0, 0.2)), plan)
+        blank, setups = job.blank, job.setups
+        if turned is not None and turned.setups:
+            blank = turned.blank
+            setups = make_setups(job.recognition, blank, job.settings_of(SetupSettings))
+        findings = too_large(blank, setups, job.shop) or without_axes(
+            job.recognition, setups, job.shop, NEEDS_AXES, LEANING
         )
+        if turned is not None and not turned.setups:
+            findings = [*turned.findings]
         if findings:
             return process_of(
                 (), findings, plan=plan, material=material, setups=job.setups, shop=job.shop
             )
         part = job.context.part
-        setup, *others = both_sides(job.setups, job.blank, job.shop, job.settings_of(SetupSettings))
+        setup, *others = after_turning(
+            both_sides(setups, blank, job.shop, job.settings_of(SetupSettings)),
+            turned,
+            job.settings_of(SetupSettings),
+        )
         state = CasingPlanState(
             part=part,
             mesh=job.progress.aside(lambda _: fine_mesh(part)),
             context=job.context,
             recognition=job.recognition,
-            blank=job.blank,
+            blank=blank,
             setup=setup,
             material=material,
             machine=job.shop.machine(setup.machine),
@@ -69,7 +84,8 @@ class CasingPlanner:
             route=route,
             settings=job.settings_of(CasingRouteSettings),
             cutting=job.settings_of(CuttingSettings),
-            progress=job.progress,
+            progress=job.progress.part(0.2, 1.0),
+            turned=turned,
             next=others[0] if others else None,
         )
         return make_casing_route(state, plan)
@@ -83,6 +99,7 @@ class CasingPlanner:
                 PlaneDrive: plane_driven,
                 SurfaceDrive: sides_driven,
                 HoleDrive: holes_driven,
+                RevolvedDrive: revolved_driven,
             },
             self,
             operation,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from trunnion.findings import face_tags, info, warning
 from trunnion.model.operation import Operation
@@ -25,6 +26,7 @@ from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.flip import turned
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.process import process_of
+from trunnion.plan.turning.operations import RULES as TURNING_RULES
 from trunnion.recognize.casing.kinds import BOSS, POCKET, PROFILE
 from trunnion.shop import Stage, TypicalPlan
 
@@ -37,6 +39,7 @@ CUTTER_RULES = (
     SIDE_CUTTER,
     FILLET,
     *RULES,
+    *TURNING_RULES,
 )
 """Words that a typical plan may give for a stage's cutter."""
 
@@ -49,7 +52,7 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
     state.progress = progress.part(0.4, 0.7)
     holes = casing_holes(state)
     state.progress = progress.part(0.7, 1.0)
-    for stage in state.progress.each(plan.stages):
+    for stage in state.progress.each([s for s in plan.stages if s.cutter not in TURNING_RULES]):
         if stage.cutter in (LAYERS, REST_LAYERS, BOTTOM_CUTTER, FOOT):
             for pocket in grounds_in_order(state):
                 if stage.cutter in (LAYERS, REST_LAYERS):
@@ -63,8 +66,9 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
                 plan_boss(state, stage, boss)
     _add_turned(state)
     setups = _setups(state)
+    turned = state.turned.operations if state.turned is not None else ()
     return process_of(
-        _in_order(state.operations, plan.stages, [s.name for s in setups]),
+        _in_order([*turned, *state.operations], plan.stages, [s.name for s in setups]),
         state.findings,
         plan=plan,
         material=state.material,
@@ -76,16 +80,16 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
 def _setups(state: CasingPlanState) -> tuple[Setup, ...]:
     """Return the setups that cut anything, or the first, and tell how the part is turned from one to the next."""
     used = {o.setup for o in state.operations}
-    if state.next is None or state.next.name not in used:
-        return (state.setup,)
-    if state.setup.name not in used:
-        return (state.next,)
-    first, second = (
-        SetupSpace.of(state.part, state.recognition, state.blank, setup)
-        for setup in (state.setup, state.next)
-    )
-    state.findings.append(turned(first, second))
-    return (state.setup, state.next)
+    milling = [s for s in (state.setup, state.next) if s is not None and s.name in used]
+    before = state.turned.setups if state.turned is not None else ()
+    setups = (*before, *(milling or ([] if before else [state.setup])))
+    for first, second in pairwise(setups):
+        spaces = (
+            SetupSpace.of(state.part, state.recognition, s.begins_with(state.blank), s)
+            for s in (first, second)
+        )
+        state.findings.append(turned(*spaces))
+    return setups
 
 
 def _in_order(
@@ -117,18 +121,22 @@ def _in_order(
 
 
 def _add_turned(state: CasingPlanState) -> None:
-    """Tell what must come turned, and which pockets' sides no operation cuts."""
+    """Tell what must come turned where it isn't turned here, and which pockets' sides no operation cuts."""
     cut = {t for o in state.operations for t in o.faces}
     profiles = state.recognition.of_kind(PROFILE)
-    state.findings.append(
-        info(
-            "route.turned",
-            f"{', '.join(f.id for f in profiles) or 'faces of revolution'} and the bottoms where no boss is beside them come turned: the "
-            "blank has them",
-            *(f.id for f in profiles),
-            remedy="turn the part to the blank's outline before it is milled",
+    if state.turned is not None:
+        state.findings.extend(state.turned.findings)
+    else:
+        state.findings.append(
+            info(
+                "route.turned",
+                f"{', '.join(f.id for f in profiles) or 'faces of revolution'} and the bottoms where no boss is beside them come turned: "
+                "the blank has them",
+                *(f.id for f in profiles),
+                remedy="turn the part to the blank's outline before it is milled, or choose a blank that is turned here "
+                "(blank.kind = turned, blank.bored = yes)",
+            )
         )
-    )
     reported = {w for f in state.findings for w in f.where}
     for feature in state.recognition:
         open_tags = set(feature.tags) - cut
