@@ -63,7 +63,8 @@ def _levels(exact: Floats, low: float, high: float) -> Floats:
     ends = np.unique(np.concatenate([[low, high], exact[:, 0], exact[:, 1]]))
     ends = ends[np.diff(ends, prepend=-np.inf) > COINCIDENT]
     found = [
-        np.linspace(a, b, max(2, int(np.ceil((b - a) / STEP)) + 1))[:-1] for a, b in pairwise(ends)
+        np.linspace(a, b, max(2, int(np.ceil((b - a) / STEP - COINCIDENT)) + 1))[:-1]
+        for a, b in pairwise(ends)
     ]
     return np.concatenate([*found, ends[-1:]])
 
@@ -118,7 +119,9 @@ def _keeps_to(edges: Floats, level: Floats, limits: Floats, sense: float) -> Boo
     keeps = np.ones(len(edges), dtype=bool)
     for share in SHARES:
         at = edges[:, 0] + share * (edges[:, 1] - edges[:, 0])
-        row = np.clip(np.searchsorted(level, at[:, 2], side="right") - 1, 0, len(limits) - 1)
+        # Heights that are one but for rounding, as in a part that stands askew in its file, are at the same level.
+        row = np.searchsorted(level, at[:, 2] + COINCIDENT, side="right") - 1
+        row = np.clip(row, 0, len(limits) - 1)
         part = (at[:, 2] - level[row]) / (level[row + 1] - level[row])
         limit = limits[row, 0] + part * (limits[row, 1] - limits[row, 0])
         # At the very height between two spans either one may hold.
@@ -139,8 +142,9 @@ def _take_edges(a: Floats, b: Floats, level: Floats, outer: Floats, inner: Float
     least = np.linalg.norm(a[:, :2] + np.clip(share, 0.0, 1.0)[:, None] * step, axis=1)
     # An edge between points of a bore dips inside of it by the mesh's chord error, the part doesn't.
     least = np.minimum(least + CHORD, np.minimum(r0, r1))
-    first = np.clip(np.searchsorted(level, a[:, 2], side="right") - 1, 0, len(outer) - 1)
-    last = np.clip(np.searchsorted(level, b[:, 2], side="left") - 1, first, len(outer) - 1)
+    low, high = a[:, 2] + COINCIDENT, b[:, 2] - COINCIDENT
+    first = np.clip(np.searchsorted(level, low, side="right") - 1, 0, len(outer) - 1)
+    last = np.clip(np.searchsorted(level, high, side="left") - 1, first, len(outer) - 1)
     size = last - first + 1
     edge = np.repeat(np.arange(len(a)), size)
     row = np.arange(len(edge)) - np.repeat(np.cumsum(size) - size, size) + first[edge]
@@ -149,7 +153,7 @@ def _take_edges(a: Floats, b: Floats, level: Floats, outer: Floats, inner: Float
         r0[edge] + (r1 - r0)[edge] * np.clip((level[row + k] - a[edge, 2]) / rise, 0.0, 1.0)
         for k in (0, 1)
     ]
-    whole = (level[row] >= a[edge, 2]) & (level[row + 1] <= b[edge, 2])
+    whole = (level[row] >= a[edge, 2] - COINCIDENT) & (level[row + 1] <= b[edge, 2] + COINCIDENT)
     most = np.maximum(*ends)
     for k in (0, 1):
         np.maximum.at(outer[:, k], row, np.where(whole, ends[k], most))

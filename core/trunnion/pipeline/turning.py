@@ -83,6 +83,8 @@ def refused(operation: Operation, reason: Refused) -> OperationPath:
         str(reason),
         operation.id,
         operation.feature,
-        fix=Fix(kind="smaller_tool", operation=operation.id, reason="toolpath.refused"),
+        fix=Fix(kind="smaller_tool", operation=operation.id, reason="toolpath.refused")
+        if operation.tool.rotates
+        else None,
     )
     return OperationPath(operation=operation.id, findings=(refusal,))

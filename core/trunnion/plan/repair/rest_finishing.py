@@ -46,7 +46,10 @@ def _with_each_smaller(
         finishing = [
             o
             for o in process.operations
-            if face in o.faces and not o.suppressed and o.kind not in NOT_FINISHING
+            if face in o.faces
+            and o.tool.rotates
+            and not o.suppressed
+            and o.kind not in NOT_FINISHING
         ]
         if finishing:
             smallest = min(finishing, key=lambda o: (o.cutter.diameter, o.id))
@@ -65,7 +68,11 @@ def _with_smaller(
     most: float,
 ) -> ProcessTree | None:
     now = operation.cutter
-    beside = [o for o in process.operations if set(o.faces) & set(faces) and not o.suppressed]
+    beside = [
+        o
+        for o in process.operations
+        if set(o.faces) & set(faces) and o.tool.rotates and not o.suppressed
+    ]
     deep = min(depth_reached(o.cutter) for o in beside)
     tool = next_tool(
         process,

@@ -88,7 +88,7 @@ def estimate_of(
     With the tags of all groups of patches, and which of them are local, totals are those of either class and of every group (the paper's
     figure 17); an operation's time goes to its faces by their area. Without them totals are those of the operations' features.
     """
-    done = [o for o in process.operations if not o.suppressed and o.faces]
+    done = [o for o in process.operations if not o.suppressed and o.faces and o.tool.rotates]
     finishing = [o for o in done if o.kind == FINISH]
     if not finishing:
         return None
