@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import shapely
 
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.curve import Curve
@@ -201,8 +200,10 @@ class TurningTool:
             else self.insert.nose_radius
         )
         points = np.vstack([closed.sampled(chord)[:-1, ::-1], [[nose, 0.0], [0.0, nose]]])
-        hull = shapely.convex_hull(shapely.multipoints(points))
-        return shapely.get_coordinates(hull)[:-1] * [out, along]
+        # All lie on one convex outline: in the order of their directions from its middle they go round it.
+        off = points - points.mean(axis=0)
+        order = np.argsort(np.arctan2(off[:, 1], off[:, 0]), kind="stable")
+        return points[order] * [out, along]
 
     def holder_profiles(self) -> tuple[Floats, ...]:
         """Return the holder's head, from under the insert to the shank, and its shank as convex outlines (m, 2) of x and z, the tool's
