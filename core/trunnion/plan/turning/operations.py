@@ -55,7 +55,7 @@ class SetupTurning:
     cut: list[BaseGeometry] = field(default_factory=list)
 
     def limits_for(self, side: TurningSide) -> Limits:
-        """Return how low tools of an side go: a face is turned to the part's own end."""
+        """Return how low tools go from a side: a face is turned to the part's own end."""
         top = float(self.part.bounds[3])
         return (
             Limits(floor=self.limits.floor, lowest=top) if side is TurningSide.FACE else self.limits

@@ -16,7 +16,7 @@ BAR_GRIPPED = 2.0
 def candidates(
     tools: Sequence[TurningTool], side: TurningSide, hand: str, *, finish: bool
 ) -> list[TurningTool]:
-    """Return the tools for an side, the preferred first, one for each corner angle: to rough the strongest corner first, to finish
+    """Return the tools for a side, the preferred first, one for each corner angle: to rough the strongest corner first, to finish
     the slender ones only; of one angle the thickest bar and the largest nose."""
     fitting = [t for t in tools if t.inside is (side is TurningSide.INSIDE) and t.hand == hand]
     ordered = sorted(

@@ -35,7 +35,7 @@ class PassView:
 
     @staticmethod
     def of(side: TurningSide, tool: TurningTool) -> PassView:
-        """Return how a tool's passes of an side are seen: a right-hand tool is fed down the axis, or inwards over a face."""
+        """Return how a tool's passes from a side are seen: a right-hand tool is fed down the axis, or inwards over a face."""
         if side is TurningSide.FACE:
             return PassView(((-1.0, 0.0), (0.0, 1.0)))
         down = -1.0 if tool.hand == "right" else 1.0

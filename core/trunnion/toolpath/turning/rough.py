@@ -22,21 +22,19 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import TurningTool
 from trunnion.plan.turning.contour_spans import THIN
 from trunnion.plan.turning.drive import RevolvedDrive
-from trunnion.plan.turning.meridian import meridian_in
 from trunnion.plan.turning.reach import (
     DEEP,
     TurningReach,
     changes,
-    reach_of,
     swept_along,
     touching,
 )
 from trunnion.plan.turning.settings import TurningSettings
-from trunnion.plan.turning.view import TurningSide
 from trunnion.progress import Progress
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.turning_passes.contour import contour_passes
 from trunnion.toolpath.turning_passes.passes import TurningPath
+from trunnion.toolpath.turning_passes.work import work_of
 
 OVER = 1e-3
 """mm over the deepest ground at which the last layer goes: on it the tool would touch what must stand."""
@@ -57,23 +55,13 @@ def rough(
     progress: Progress,
 ) -> Planned:
     """Return layers of the data's depth, and a pass along the contour."""
-    meridian = meridian_in(stock, setup.frame)
-    reach = reach_of(
-        tool,
-        TurningSide(settings.side),
-        drive.part_area,
-        settings.limits,
-        meridian,
-        allowance=settings.allowance,
-    )
+    work = work_of(drive, tool, data, stock, setup, settings, settings.allowance)
     progress.at(0.3, "turning")
-    seen = reach.view.shape_seen(meridian)
-    path = TurningPath(reach.view, data, seen.bounds[3] + settings.clearance, setup.clearance)
-    layers = _Layers(path, reach, seen, data.depth, settings.clearance)
+    layers = _Layers(work.path, work.reach, work.stock, data.depth, settings.clearance)
     layers.turn()
     progress.at(0.8, "following the contour")
-    contour_passes(path, reach, layers.left(), settings.clearance, settings.bridge)
-    return Planned(path=path.made())
+    contour_passes(work.path, work.reach, layers.left(), settings.clearance, settings.bridge)
+    return Planned(path=work.path.made())
 
 
 class _Layers:
