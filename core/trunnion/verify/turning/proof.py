@@ -28,6 +28,8 @@ from trunnion.verify.turning.moves import (
 
 FINE = 1e-3
 """mm: what two outlines share along their rims only, by the chords that they are made of, is no contact."""
+STRETCH = 3.0
+"""mm of way over which a depth of cut is taken at least."""
 LEAST_CHIP = 1e-3
 """mm: below this an edge rubs; Kienzle's formula is not held there."""
 
@@ -36,7 +38,7 @@ LEAST_CHIP = 1e-3
 class TurningProof:
     """What was measured in a turning setup on its machine, by move: gouge (n,) mm of the insert and collision (n,) mm of the holder in the
     part or in standing stock, with the places (n, 2); rapid_depth (n,) mm in stock; removed (n,) mm3, depth (n,) mm of cut on the mean of
-    the move, chip (n,) mm, rate (n,) cm3/min, power (n,) kW, seconds (n,). `left` is the meridian of the stock after it, `cut` what all
+    a stretch, chip (n,) mm, rate (n,) cm3/min, power (n,) kW, seconds (n,). `left` is the meridian of the stock after it, `cut` what all
     feed moves have swept."""
 
     program: Program
@@ -86,6 +88,7 @@ def prove_turning(
     }
     gouge_at, collision_at, in_stock = np.zeros((n, 2)), np.zeros((n, 2)), np.zeros(n, bool)
     cuts: list[BaseGeometry] = []
+    areas = np.zeros(n)
     # What comes no deeper than chords are off touches the part at most: nearly all moves are told so at once.
     inner = shapely.buffer(part, -FINE)
     shapely.prepare(inner)
@@ -102,7 +105,7 @@ def prove_turning(
             if area > 0.0:
                 # Guldin: what an area sweeps about the axis is the area times the way of its centroid.
                 made["removed"][row] = 2.0 * math.pi * float(shared.centroid.x) * area
-                made["depth"][row] = area / max(float(moves.length[row]), CHORD)
+                areas[row] = area
                 stock = shapely.difference(stock, hull)
             cuts.append(hull)
         for shape in tool.holder:
@@ -114,6 +117,7 @@ def prove_turning(
                 if deep > made["collision"][row]:
                     made["collision"][row], collision_at[row] = deep, where
                     in_stock[row] = is_stock
+    made["depth"] = _depths(moves, areas)
     angle = np.array([math.sin(math.radians(t.edge_angle)) for t in tools] or [1.0])
     per_turn = np.divide(
         moves.feed, moves.turns, out=np.zeros(n), where=~moves.rapid & (moves.turns > 0.0)
@@ -142,6 +146,22 @@ def prove_turning(
         cut=shapely.union_all(cuts) if cuts else shapely.Polygon(),
         **made,
     )
+
+
+def _depths(moves: TurningMoves, areas: Floats) -> Floats:
+    """Return the depth of cut of each move (n,) mm from the areas (n,) mm2 that moves take: area over length, on a stretch of `STRETCH`
+    around it at least, all in one section. An edge bears more for less, as where it comes along a shoulder."""
+    depth, cuts = np.zeros(len(moves)), ~moves.rapid
+    for section in np.unique(moves.section):
+        rows = np.flatnonzero(cuts & (moves.section == section))
+        end, total = np.cumsum(moves.length[rows]), np.cumsum(areas[rows])
+        if not len(rows) or end[-1] <= 0.0:
+            continue
+        along, taken = np.concatenate([[0.0], end]), np.concatenate([[0.0], total])
+        middle, half = end - 0.5 * moves.length[rows], 0.5 * np.maximum(moves.length[rows], STRETCH)
+        low, high = (np.interp(middle + side * half, along, taken) for side in (-1.0, 1.0))
+        depth[rows] = np.where(areas[rows] > 0.0, (high - low) / (2.0 * half), 0.0)
+    return depth
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -153,6 +153,23 @@ def test_too_deep_a_cut_is_excess_engagement_and_asks_too_much_power():
     assert "verify.power" not in codes(proof(along(50.0)))
 
 
+def test_a_depth_is_that_of_a_stretch():
+    # Coming along a shoulder an edge cuts all of its length for some hundredths: that is no depth of 10 mm.
+    part = np.array([(0, 0), (70, 0), (70, 20), (50, 20), (50, 80), (0, 80)], float)
+    stock = np.array([(0, 0), (70, 0), (70, 20.3), (50.3, 20.3), (50.3, 80), (0, 80)], float)
+    blocks = (
+        (RAPID, 80.0, 100.0),
+        (RAPID, 80.0, 60.0),
+        (LINE, 80.0, 20.03, 300.0),
+        (LINE, 50.0, 20.03, 300.0),
+        (LINE, 50.0, 20.0, 300.0),
+        (LINE, 80.0, 20.0, 300.0),
+    )
+    made = proof(section(*blocks, depth=0.3), part=part, stock=stock)
+    assert made.gouge.max() < 2e-3 and made.depth.max() < 0.9
+    assert "verify.engagement" not in codes(made)
+
+
 def test_power_is_that_of_the_makers_formula():
     made = proof(along(50.0))
     row = int(np.argmax(made.depth * (made.moves.end[:, 0] == 50.0)))
