@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from trunnion.findings import Finding, Severity
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.casing.drives import holes_driven, plane_driven, sides_driven
@@ -56,11 +58,13 @@ class CasingPlanner:
         if turned is not None and turned.setups:
             blank = turned.blank
             setups = make_setups(job.recognition, blank, job.settings_of(SetupSettings))
-        findings = too_large(blank, setups, job.shop) or without_axes(
-            job.recognition, setups, job.shop, NEEDS_AXES, LEANING
+        not_turned = turned.findings if turned is not None else ()
+        findings: Sequence[Finding] = [f for f in not_turned if f.severity is Severity.ERROR]
+        findings = (
+            findings
+            or too_large(blank, setups, job.shop)
+            or without_axes(job.recognition, setups, job.shop, NEEDS_AXES, LEANING)
         )
-        if turned is not None and not turned.setups:
-            findings = [*turned.findings]
         if findings:
             return process_of(
                 (), findings, plan=plan, material=material, setups=job.setups, shop=job.shop

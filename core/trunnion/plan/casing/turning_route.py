@@ -43,9 +43,8 @@ THICKEST_FLANGE = 60.0
 """mm: what is thicker is no flange to be held by."""
 HELD, HELD_SHARE = 20.0, 0.25
 """mm, and share of the length, that the first setup turns where there is no flange."""
-BEYOND, OVERLAP = 3.0, -0.5
-"""mm that the first setup turns past what the second one holds, and how far above that the second one stays (below 0: it turns that
-much of it once more)."""
+BEYOND, OVERLAP = 3.0, 0.5
+"""mm that the first setup turns past what the second one holds, and that the second one turns once more of what the first has turned."""
 STEP = 0.1
 """mm between heights at which a flange's end is looked for."""
 ON_FACE = 0.02
@@ -176,7 +175,7 @@ def _planned(
     now = blank
     for upright in (False, True):
         setup = _setup(len(setups), upright, (low, high), now, machine, job)
-        lowest = held + OVERLAP - (high - low) if upright else -held - BEYOND
+        lowest = held - OVERLAP - (high - low) if upright else -held - BEYOND
         stock = meridian_in(now, setup.frame)
         planned = SetupTurning(
             setup=setup,

@@ -14,7 +14,7 @@ from trunnion.units import SECONDS_PER_MINUTE, WATTS_PER_KILOWATT, trimmed
 
 TURNING_ROUGH, TURNING_FINISH = "turning_rough", "turning_finish"
 """Kinds of turning operation."""
-STRONG = 80.0
+FULL_DEPTH_ANGLE = 80.0
 """degrees: the corner that the tables' depths are for; slenderer ones bear less, in proportion."""
 NOSE_FEED = 0.5
 """A feed a revolution is at most this share of the nose radius: beyond, the nose leaves a thread."""
@@ -37,7 +37,7 @@ def turning_data(
     speed = (table.speed_finish if finish else table.speed_rough) * settings.speed_share
     feed = (table.feed_finish if finish else table.feed_rough) * settings.feed_share
     feed = min(feed, NOSE_FEED * tool.insert.nose_radius)
-    strength = min(1.0, (tool.insert.point_angle or STRONG) / STRONG)
+    strength = min(1.0, (tool.insert.point_angle or FULL_DEPTH_ANGLE) / FULL_DEPTH_ANGLE)
     depth = table.depth_finish if finish else table.depth_rough * settings.depth_share * strength
     highest = min(spindle.high, settings.spindle_limit)
     turns = float(limited_turns(speed, 2.0 * radius, highest))

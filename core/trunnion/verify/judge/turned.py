@@ -67,7 +67,10 @@ def prove_turned(
     """
     if not isinstance(blank, Revolved) or blank.axis != "z":
         raise BadInput("only a blank of revolution is turned: choose blank.kind = turned")
-    part = shapely.Polygon(meridian_outline(facets.points, facets.triangles, facets.face))
+    try:
+        part = shapely.Polygon(meridian_outline(facets.points, facets.triangles, facets.face))
+    except ValueError as reason:
+        raise BadInput(f"the part can't be held against turning: {reason}") from None
     stock: BaseGeometry = shapely.Polygon(blank.outline)
     proofs = []
     for k, (program, machine) in enumerate(zip(programs, machines, strict=False)):
@@ -75,7 +78,10 @@ def prove_turned(
         share = progress.part(k / len(programs), (k + 1) / len(programs), program.setup.name)
         made = prove_turning(program, plane, part, stock, machine, material, share)
         proofs.append(made)
-        stock = max(_polygons(made.left), key=lambda p: p.area)
+        pieces = _polygons(made.left)
+        if not pieces:
+            raise BadInput(f"setup {program.setup.name} turns all of the stock away")
+        stock = max(pieces, key=lambda p: p.area)
     return TurnedWork(proofs=tuple(proofs), before=blank, after=_with_outline(blank, stock))
 
 

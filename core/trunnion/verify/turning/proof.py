@@ -82,10 +82,7 @@ def prove_turning(
     moves = turning_moves(program, plane)
     n = len(moves)
     tools = [_Tool.of(s.tool, plane) for s in program.sections if isinstance(s.tool, TurningTool)]
-    made = {
-        name: np.zeros(n)
-        for name in ("gouge", "collision", "rapid_depth", "removed", "depth", "chip")
-    }
+    made = {name: np.zeros(n) for name in ("gouge", "collision", "rapid_depth", "removed")}
     gouge_at, collision_at, in_stock = np.zeros((n, 2)), np.zeros((n, 2)), np.zeros(n, bool)
     cuts: list[BaseGeometry] = []
     areas = np.zeros(n)

@@ -14,7 +14,13 @@ from programs import CCW, LINE, RAPID, turned_path
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.motion.program import Program, ProgramSection
-from trunnion.verify.judge.turned import TurnedWork, turned_findings, turned_operations
+from trunnion.part.shape.facets import Facets
+from trunnion.verify.judge.turned import (
+    TurnedWork,
+    prove_turned,
+    turned_findings,
+    turned_operations,
+)
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.turning.moves import MeridianFrame, depth_between, in_order
 from trunnion.verify.turning.proof import prove_turning
@@ -244,6 +250,25 @@ def test_turning_after_milling_is_refused():
     assert in_order([turning, milling]) == 1
     with pytest.raises(BadInput, match="setup S1 turns what was milled before"):
         in_order([milling, turning])
+
+
+def test_a_program_that_turns_all_away_is_refused_in_one_line():
+    points = np.array(
+        [(0.0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (9, 9, 9), (9, 9, 8), (9, 8, 9), (8, 9, 9)]
+    )
+    triangles = np.array(
+        [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3), (4, 6, 5), (4, 5, 7), (5, 6, 7), (6, 4, 7)]
+    )
+    turning = Program(name="a", setup=SETUP, sections=(along(2.0, end=-30.0),))
+    small = blank_of(np.array([(3, 0), (6, 0), (6, 2), (3, 2)], float))
+    one = Facets.of_mesh(points[:4], triangles[:4], np.arange(4), np.arange(1, 5))
+    with pytest.raises(BadInput, match="setup S1 turns all of the stock away"):
+        prove_turned([turning], small, [LATHE], MATERIAL, one)
+    two = Facets.of_mesh(points, triangles, np.arange(8), np.arange(1, 9))
+    with pytest.raises(
+        BadInput, match="can't be held against turning: the meridian is in 2 pieces"
+    ):
+        prove_turned([turning], small, [LATHE], MATERIAL, two)
 
 
 def test_how_deep_two_areas_lie_in_each_other():
