@@ -46,6 +46,12 @@ class Development:
         """Return the radius (mm) of the surface at places v along its straight lines."""
         return np.asarray(self.radius + self._along[0] * np.asarray(v))
 
+    def least_width(self, v: Floats, h: Floats) -> float:
+        """Return the least width that a straight body with its axis along a normal has over the plane, as a share of its own, at places v
+        (n,) and heights h (n,) mm: on a circle of radius R it spans the angle 2 asin(r / (R + h)), over the plane R times that."""
+        radius = self.radius_at(v)
+        return float((radius / (radius + np.maximum(h, 0.0) * self._along[1])).min())
+
     def to_local(self, points: Floats) -> Floats:
         """Return u, v, h (..., 3) of points in the part's coordinates."""
         local = self.frame.to_local(points)

@@ -137,13 +137,15 @@ class Drive(Protocol):
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class RollingGround:
     """Ground that a path is rolled onto: its development, the chord error (mm) of feeds, and the corners (2,) of the plane's box that the
-    stock over it is known in. `profile` (k, 2): places along the straight lines and how high the blank is there."""
+    stock over it is known in. `profile` (k, 2): places along the straight lines and how high the blank is there. `widths`: the share of its
+    width that a straight cutter still has over the plane at the top of what is cut there."""
 
     development: Development
     chord: float
     low: Floats
     high: Floats
     profile: Floats
+    widths: float
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -102,6 +102,7 @@ def test_what_is_cut_over_a_ground_is_known_along_other_directions() -> None:
         low=np.array([-60.0, 0.0]),
         high=np.array([60.0, 40.0]),
         profile=np.array([[0.0, 5.0], [20.0, 5.0], [40.0, 5.0]]),
+        widths=100.0 / 105.0,
     )
     assert views.over_ground(ground).heights == pytest.approx(5.0)
     rows = [(-20.0, 20.0, 20.0, Motion.RAPID), (-20.0, 20.0, 1.0, Motion.LINE)]
@@ -113,6 +114,28 @@ def test_what_is_cut_over_a_ground_is_known_along_other_directions() -> None:
     assert 101.0 <= seen.heights[cell] < 103.5
     beside = tuple(((np.array([0.0, 35.0]) - seen.corner) / seen.cell).astype(int))
     assert seen.heights[beside] == pytest.approx(105.0, abs=0.1)
+
+
+def test_stock_that_straight_cutters_leave_high_up_is_known() -> None:
+    """On a radius of 100 mm a cutter of 12 mm spans 2 asin(6 / 125) at 25 mm: 9.6 mm of the ground, and two passes 11 mm apart leave a fin
+    between them that is in no cutter's way at the ground."""
+    outline = np.array([[90.0, 0.0], [125.0, 0.0], [125.0, 40.0], [90.0, 40.0]])
+    views = StockViews(Revolved(frame=WORLD, outline=outline, material="EN AW-7075", density=2.8))
+    profile = np.array([[0.0, 25.0], [20.0, 25.0], [40.0, 25.0]])
+    ground = RollingGround(
+        development=GROUND,
+        chord=0.01,
+        low=np.array([-60.0, 0.0]),
+        high=np.array([60.0, 40.0]),
+        profile=profile,
+        widths=GROUND.least_width(*profile.T),
+    )
+    for u in (-5.5, 5.5):
+        rows = [(u, 0.0, 60.0, Motion.RAPID), (u, 0.0, 1.0, Motion.LINE)]
+        views.cut_over(ground, flat_path([*rows, (u, 40.0, 1.0, Motion.LINE)]), mill(12.0))
+    stock = views.over_ground(ground)
+    assert stock.height((0.0, 20.0), (0.0, 20.0), 0.1) == pytest.approx(25.0)
+    assert stock.height((5.5, 20.0), (5.5, 20.0), 3.5) == pytest.approx(1.0)
 
 
 class Drilling:

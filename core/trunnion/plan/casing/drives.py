@@ -112,6 +112,7 @@ def rolling_on(ground: DevelopedGround, chord: float) -> RollingGround:
         low=np.asarray(low),
         high=np.asarray(high),
         profile=ground.profile,
+        widths=ground.widths,
     )
 
 

@@ -91,6 +91,13 @@ class DevelopedGround:
         inside = (v >= self.ends[0]) & (v <= self.ends[1])
         return float(self.profile[inside, 1].max())
 
+    @property
+    def widths(self) -> float:
+        """The share of its width that a straight cutter still has over the plane at the top of the blank, where it has least of it."""
+        v, high = self.profile.T
+        inside = (v >= self.ends[0]) & (v <= self.ends[1])
+        return self.development.least_width(v[inside], high[inside])
+
     def watched(self, progress: Progress) -> DevelopedGround:
         """Return the same ground, which looks at another progress."""
         return replace(self, progress=progress)

@@ -42,7 +42,9 @@ class PlanningStock:
     """Heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,).
 
     `digest` is a short stable digest of the uncut field and everything that was cut from it. A `centred` field errs to neither side:
-    a cell is lowered where the cutter covers its middle. It is what loads are taken from, never clearances.
+    a cell is lowered where the cutter covers its middle. It is what loads are taken from, never clearances. `widths` is the share of a
+    cutter's radius that it clears up to the top of the stock: less than 1 over ground laid flat, where a straight body gets narrower
+    upwards.
     """
 
     heights: Floats
@@ -50,6 +52,7 @@ class PlanningStock:
     cell: float
     digest: str
     centred: bool = False
+    widths: float = 1.0
 
     @staticmethod
     def of(blank: Blank, setup: Setup, cell: float = CELL) -> PlanningStock:
@@ -120,7 +123,7 @@ class PlanningStock:
         starts, ends, rows, error = chords(path)
         if tool.full_width_height > 0.0:
             starts, ends = _as_flat(starts, ends, tool.full_width_height)
-        radius, gone = tool.radius - error, np.empty((len(starts), 2))
+        radius, gone = self.widths * (tool.radius - error), np.empty((len(starts), 2))
         # A cell's furthest corner counts: with a cutter as much wider its middle does.
         wider = heightfield.HALF_DIAGONAL * self.cell if self.centred else 0.0
         for first in progress.each(range(0, len(starts), MOVES)):

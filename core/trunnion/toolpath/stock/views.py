@@ -176,7 +176,8 @@ def _over(ground: RollingGround) -> PlanningStock:
         heights=_fixed(heights),
         corner=_fixed(ground.low.copy()),
         cell=cell,
-        digest=digest(ground.development, shape, cell, ground.profile),
+        digest=digest(ground.development, shape, cell, ground.profile, ground.widths),
+        widths=ground.widths,
     )
 
 
