@@ -22,7 +22,7 @@ from trunnion.plan.development.drives import (
     ring_of,
     tangent_reach,
 )
-from trunnion.plan.development.ground import DevelopedGround, ground_of
+from trunnion.plan.development.ground import DevelopedGround, ground_of, sector
 from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.progress import NO_PROGRESS
@@ -159,3 +159,27 @@ def test_a_boss_is_cut_to_its_top_without_another_layer_all_round() -> None:
 def test_a_disc_finishes_bent_ground_as_far_as_it_is_near_to_it() -> None:
     reach = tangent_reach(ground())
     assert math.hypot(RADIUS, reach) - RADIUS == pytest.approx(0.01, rel=1e-3)
+
+
+@pytest.mark.parametrize("slope", [0.3, -0.3, 1.8])
+def test_bands_of_cones_lie_flat_between_true_arcs(slope: float) -> None:
+    development = Development(frame=WORLD, radius=RADIUS, height=0.0, slope=slope, middle=0.4)
+    band = sector(development, 10.0, 30.0, math.pi)
+    low, high = (float(r) for r in development.radius_at(np.array([10.0, 30.0])))
+    assert band.area == pytest.approx(math.pi * (low + high) * 20.0, rel=1e-9)
+    # Two arcs and two straight ends: nothing is made of chords.
+    assert [piece.outer.n_segments for piece in band.pieces] == [4]
+    height = 10.0 / math.hypot(1.0, slope)
+    on = development.from_cylindrical(
+        np.array([low]), np.array([0.9 * math.pi]), np.array([height])
+    )
+    assert band.signed_distance(on[:, :2]) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_steep_cone_does_not_lap_over_itself() -> None:
+    development = Development(frame=WORLD, radius=RADIUS, height=0.0, slope=2.0, middle=0.0)
+    half, share = 2.0 * math.pi, development.half_turn / math.pi
+    low, high = (float(r) / share for r in development.radius_at(np.array([10.0, 30.0])))
+    whole = math.pi * (high**2 - low**2)
+    assert sector(development, 10.0, 30.0, half).area == pytest.approx(whole, rel=0.01)
+    assert sector(development, 10.0, 30.0, half).area < whole

@@ -12,7 +12,9 @@ from trunnion.plan.casing.grounds import bottom_of, ground_under
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.cutting.milling import roughing_depth, roughing_width
 from trunnion.plan.development.drives import (
+    FLOOR,
     HAIR,
+    ROUGH,
     GroundCutter,
     remaining_on,
     ring_of,
@@ -32,6 +34,8 @@ LAYERS, REST_LAYERS, BOTTOM_CUTTER, FOOT = "layers", "rest_layers", "bottom", "f
 """Words that a typical plan may give for the cutter of a stage on bottoms."""
 BESIDE = 0.5
 """mm that shank and holder keep from the part, beside the cutter's own allowance."""
+OFF_STOCK = 0.3
+"""mm that shank and holder keep from what earlier roughing left on sides."""
 CORNER = 0.5
 """mm: the corner radius that roughing cutters last longest with and leave little at feet."""
 SMALLEST = 4.0
@@ -74,21 +78,21 @@ def plan_layers(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
     ring = ring_of(ground).minus(ground.over(state.route.floor_allowance))
     if stage.cutter == LAYERS:
         wanted = state.settings.rough_cutter
-        tool = named(state.shop, wanted) if wanted else _rougher(state, ground, ring)
+        tool = named(state.shop, wanted) if wanted else _rougher(state, pocket, ground, ring)
         if tool is None:
             state.findings.append(_no_cutter(pocket, stage, ground))
             return
         _add_layers(state, stage, pocket, ground, tool, "")
         return
-    before = [o.cutter for o in state.operations if o.feature == pocket.id and o.kind == "rough"]
+    before = [o.cutter for o in state.operations if o.feature == pocket.id and o.kind == ROUGH]
     if not before:
         return
-    last, reached = before[-1], _roughed(state, ground, before[-1], ring)
+    last, reached = before[-1], _roughed(state, pocket, ground, before[-1], ring)
     n = 1
     for tool in _rough_candidates(state, ground):
         if tool.diameter > FALLING * last.diameter or tool.diameter < SMALLEST:
             continue
-        more = _roughed(state, ground, tool, ring)
+        more = _roughed(state, pocket, ground, tool, ring)
         opened = more.minus(reached).opened(HAIR).split()
         if max((piece.area for piece in opened), default=0.0) < OPENED * tool.diameter**2:
             continue
@@ -101,12 +105,12 @@ def plan_floor(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
     ground = state.grounds[pocket.id]
     ring = ring_of(ground).minus(ground.over(LEAST))
     before = [
-        GroundCutter.of(o) for o in state.operations if o.feature == pocket.id and o.kind == "floor"
+        GroundCutter.of(o) for o in state.operations if o.feature == pocket.id and o.kind == FLOOR
     ]
     reach = tangent_reach(ground)
     if stage.cutter == BOTTOM_CUTTER:
         wanted = state.settings.finish_cutter
-        tool = named(state.shop, wanted) if wanted else _finisher(state, ground, ring)
+        tool = named(state.shop, wanted) if wanted else _finisher(state, pocket, ground, ring)
     else:
         if not before or before[-1].tool.radius <= reach:
             return
@@ -129,7 +133,7 @@ def plan_floor(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
         faces=pocket.with_role(BOTTOM),
         choices={
             STOCK: stock,
-            AROUND_TOOL: BESIDE,
+            AROUND_TOOL: _around(state, ground, tool, pocket, 0.0),
             ABOVE_TOOL: state.route.reach_clearance,
             "plane.floor.wall_distance": 0.0,
         },
@@ -151,7 +155,7 @@ def _add_layers(
     choices: dict[str, Value] = {
         WALL_ALLOWANCE: wall,
         FLOOR_ALLOWANCE: floor,
-        AROUND_TOOL: wall + BESIDE,
+        AROUND_TOOL: _around(state, ground, tool, pocket, wall),
         ABOVE_TOOL: state.route.reach_clearance,
     }
     state.add(
@@ -189,25 +193,49 @@ def _one_a_size(tools: Sequence[Tool]) -> list[Tool]:
     return list(found.values())
 
 
-def _rougher(state: CasingPlanState, ground: DevelopedGround, ring: Region) -> Tool | None:
+def _rougher(
+    state: CasingPlanState, pocket: Feature, ground: DevelopedGround, ring: Region
+) -> Tool | None:
     tools = _rough_candidates(state, ground)
     for tool in tools:
-        if _roughed(state, ground, tool, ring).area >= state.settings.share * ring.area:
+        if _roughed(state, pocket, ground, tool, ring).area >= state.settings.share * ring.area:
             return tool
     return tools[-1] if tools else None
 
 
-def _roughed(state: CasingPlanState, ground: DevelopedGround, tool: Tool, ring: Region) -> Region:
+def _roughed(
+    state: CasingPlanState, pocket: Feature, ground: DevelopedGround, tool: Tool, ring: Region
+) -> Region:
     """Return what of a ring a roughing cutter clears."""
     wall = state.route.wall_allowance
-    free = ground.free(
-        state.route.floor_allowance, tool, wall + BESIDE, state.route.reach_clearance
-    )
+    around = _around(state, ground, tool, pocket, wall)
+    free = ground.free(state.route.floor_allowance, tool, around, state.route.reach_clearance)
     axis_region = free.offset(-tool.radius - wall)
     return axis_region.offset(tool.radius + wall).intersect(ring) if axis_region else axis_region
 
 
-def _finisher(state: CasingPlanState, ground: DevelopedGround, ring: Region) -> Tool | None:
+def _around(
+    state: CasingPlanState, ground: DevelopedGround, tool: Tool, pocket: Feature, own: float
+) -> float:
+    """Return what (mm) shank and holder of a cutter with an allowance of its `own` keep from the part.
+
+    Where the ring is higher than the flutes, what earlier roughing left on sides is in the way of the shank: high up a straight cutter is
+    the narrower over the plane, and leaves that much more than its allowance.
+    """
+    before = [
+        o.cutter.radius
+        for o in state.operations
+        if o.feature == pocket.id and o.kind == ROUGH and o.cutter.radius > tool.radius
+    ]
+    if not before or tool.flute_length >= ground.top:
+        return own + BESIDE
+    left = state.route.wall_allowance + (1.0 - ground.widths) * max(before)
+    return max(own + BESIDE, left + OFF_STOCK)
+
+
+def _finisher(
+    state: CasingPlanState, pocket: Feature, ground: DevelopedGround, ring: Region
+) -> Tool | None:
     deep = ground.top + state.route.reach_clearance
     fits = [
         t
@@ -216,9 +244,9 @@ def _finisher(state: CasingPlanState, ground: DevelopedGround, ring: Region) -> 
     ]
     tools = _one_a_size(sorted(fits, key=lambda t: (-t.diameter, depth_reached(t), t.name)))
     for tool in tools:
-        axis_region = ground.free(0.0, tool, BESIDE, state.route.reach_clearance).offset(
-            -tool.radius
-        )
+        around = _around(state, ground, tool, pocket, 0.0)
+        free = ground.free(0.0, tool, around, state.route.reach_clearance)
+        axis_region = free.offset(-tool.radius)
         if axis_region:
             done = axis_region.offset(tool.radius).intersect(ring)
             if done.area >= state.settings.share * ring.area:

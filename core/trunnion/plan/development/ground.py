@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import shapely
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.developed_mesh import developed_triangles
 from trunnion.geometry.development import Development
 from trunnion.geometry.mesh import Mesh
-from trunnion.geometry.plane.plan_area import plan_area_above, region_of
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import Region, union_all
 from trunnion.model.blank import Blank
 from trunnion.model.tool import Tool
@@ -32,8 +32,8 @@ STEP = 2.0
 """mm: heights that shank and holder are kept off the part at go in such steps, always down."""
 LAP, ROUNDED = 2e-3, 6
 """mm by which bands lap over what makes them, and decimals of mm of their pieces."""
-CHORD = 0.01
-"""mm: chord error of circles over the plane of a cone."""
+GAP = 0.01
+"""rad of a cone's plane that stay free between the two ends of what goes round it."""
 LINES = 400
 """Places along the straight lines at which the blank's height is taken."""
 TURNS = (0.0, 1.0, 2.7)
@@ -188,19 +188,23 @@ class DevelopedGround:
 
 def sector(development: Development, low: float, high: float, half: float) -> Region:
     """Return the plane's area between two places along the straight lines and two angles (rad) about the axis, left and right of its
-    middle."""
+    middle; of a cone's plane at most all but a narrow gap."""
     if development.half_turn == 0.0:
         wide = half * development.radius
         return Region.rectangle(-wide, low, wide, high)
-    count = max(8, math.ceil(half * math.sqrt(development.radius_at(np.array(high)) / CHORD)))
-    turn = np.linspace(-half, half, count)
-    rows = []
-    for v, turns in ((low, turn), (high, turn[::-1])):
-        on = np.column_stack([np.zeros(count), np.full(count, v), np.zeros(count)])
-        radius = development.radius_at(on[:, 1])
-        height = development.frame.to_local(development.to_world(on))[:, 2]
-        rows.append(development.from_cylindrical(radius, turns, height)[:, :2])
-    return region_of(shapely.Polygon(np.vstack(rows)).buffer(0.0))
+    share = development.half_turn / math.pi
+    half = min(half, (math.pi - GAP) / share)
+    corners = np.array([[low, -half], [low, half], [high, half], [high, -half]])
+    on = np.column_stack([np.zeros(4), corners[:, 0], np.zeros(4)])
+    height = development.frame.to_local(development.to_world(on))[:, 2]
+    points = development.from_cylindrical(
+        development.radius_at(corners[:, 0]), corners[:, 1], height
+    )[:, :2]
+    # Circles about the axis are arcs about the cone's tip, which lies beyond the narrow end.
+    bulge = math.copysign(math.tan(0.5 * half * share), -development.slope)
+    return Region.of(
+        [Curve(points=points, bulges=np.array([bulge, 0.0, -bulge, 0.0]), closed=True)]
+    )
 
 
 def ground_of(
