@@ -20,6 +20,7 @@ from trunnion.plan.development.drives import (
     layers_down,
     layers_over,
     ring_of,
+    shank_clearance,
     tangent_reach,
 )
 from trunnion.plan.development.ground import DevelopedGround, ground_of, sector
@@ -159,6 +160,18 @@ def test_a_boss_is_cut_to_its_top_without_another_layer_all_round() -> None:
 def test_a_disc_finishes_bent_ground_as_far_as_it_is_near_to_it() -> None:
     reach = tangent_reach(ground())
     assert math.hypot(RADIUS, reach) - RADIUS == pytest.approx(0.01, rel=1e-3)
+
+
+def test_short_cutters_keep_their_shanks_off_what_roughing_leaves_high_up() -> None:
+    """On the top's radius of 109 mm a cutter of 20 mm spans 18.3 mm of the ground's 100: 0.83 mm more stay on either side of a block."""
+    laid = ground()
+    assert laid.ring_top == pytest.approx(9.0)
+    short, roughed = mill(6.0, flute_length=7.0), [mill(20.0, 0.5), mill(12.0, 0.5)]
+    left = 0.5 + 10.0 * (1.0 - RADIUS / 109.0)
+    assert left < shank_clearance(laid, short, roughed, 0.5) < left + 0.5
+    # Flutes that reach over the ring, and cutters that went first, meet nothing.
+    assert shank_clearance(laid, mill(6.0, flute_length=10.0), roughed, 0.5) == 0.0
+    assert shank_clearance(laid, mill(20.0, flute_length=7.0), roughed, 0.5) == 0.0
 
 
 @pytest.mark.parametrize("slope", [0.3, -0.3, 1.8])

@@ -18,6 +18,7 @@ from trunnion.plan.development.drives import (
     GroundCutter,
     remaining_on,
     ring_of,
+    shank_clearance,
     tangent_reach,
 )
 from trunnion.plan.development.ground import DevelopedGround
@@ -34,8 +35,6 @@ LAYERS, REST_LAYERS, BOTTOM_CUTTER, FOOT = "layers", "rest_layers", "bottom", "f
 """Words that a typical plan may give for the cutter of a stage on bottoms."""
 BESIDE = 0.5
 """mm that shank and holder keep from the part, beside the cutter's own allowance."""
-OFF_STOCK = 0.3
-"""mm that shank and holder keep from what earlier roughing left on sides."""
 CORNER = 0.5
 """mm: the corner radius that roughing cutters last longest with and leave little at feet."""
 SMALLEST = 4.0
@@ -217,20 +216,9 @@ def _roughed(
 def _around(
     state: CasingPlanState, ground: DevelopedGround, tool: Tool, pocket: Feature, own: float
 ) -> float:
-    """Return what (mm) shank and holder of a cutter with an allowance of its `own` keep from the part.
-
-    Where the ring is higher than the flutes, what earlier roughing left on sides is in the way of the shank: high up a straight cutter is
-    the narrower over the plane, and leaves that much more than its allowance.
-    """
-    before = [
-        o.cutter.radius
-        for o in state.operations
-        if o.feature == pocket.id and o.kind == ROUGH and o.cutter.radius > tool.radius
-    ]
-    if not before or tool.flute_length >= ground.top:
-        return own + BESIDE
-    left = state.route.wall_allowance + (1.0 - ground.widths) * max(before)
-    return max(own + BESIDE, left + OFF_STOCK)
+    """Return what (mm) shank and holder of a cutter with an allowance of its `own` keep from the part."""
+    before = [o.cutter for o in state.operations if o.feature == pocket.id and o.kind == ROUGH]
+    return max(own + BESIDE, shank_clearance(ground, tool, before, state.route.wall_allowance))
 
 
 def _finisher(

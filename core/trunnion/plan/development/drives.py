@@ -32,6 +32,8 @@ NEARLY = 10.0 * tolerance.SEW
 """mm: heights that differ by less are cut as one."""
 FLAT = 0.01
 """mm that a level disc may stay off bent ground and still have finished it."""
+OFF_STOCK = 0.3
+"""mm that shank and holder keep from what earlier roughing left on sides."""
 BESIDE = 1.0
 """mm that a bottom is finished on beyond the ring that stands on it."""
 
@@ -59,6 +61,20 @@ class GroundCutter:
 def tangent_reach(ground: DevelopedGround) -> float:
     """Return how far (mm) from its axis a level disc that touches bent ground finishes it across: sqrt(2 r e) for a gap e at its rim."""
     return math.sqrt(2.0 * ground.least_radius * FLAT)
+
+
+def shank_clearance(
+    ground: DevelopedGround, tool: Tool, roughed: Sequence[Tool], allowance: float
+) -> float:
+    """Return what (mm) a shank must keep from the part, beside what larger cutters left on its sides with an allowance; 0 where the flutes
+    are longer than that is high.
+
+    At the top of the ring a straight cutter is narrower over the plane, and leaves that much more than its allowance.
+    """
+    larger = [cutter.radius for cutter in roughed if cutter.radius > tool.radius]
+    if not larger or tool.flute_length >= ground.ring_top:
+        return 0.0
+    return allowance + (1.0 - ground.widths) * max(larger) + OFF_STOCK
 
 
 def ring_of(ground: DevelopedGround) -> Region:

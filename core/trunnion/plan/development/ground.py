@@ -36,6 +36,8 @@ GAP = 0.01
 """rad of a cone's plane that stay free between the two ends of what goes round it."""
 LINES = 400
 """Places along the straight lines at which the blank's height is taken."""
+END_STEPS = 2.0
+"""Steps between places along the straight lines within which of an end the blank is that of what stands beside the ground."""
 TURNS = (0.0, 1.0, 2.7)
 """rad about the axis at which a blank must look the same to count as round."""
 
@@ -92,11 +94,23 @@ class DevelopedGround:
         return float(self.profile[inside, 1].max())
 
     @property
+    def ring(self) -> Floats:
+        """Places along the straight lines and heights (k, 2) mm of the blank away from both ends, where flanges beside it begin."""
+        v = self.profile[:, 0]
+        # The profile is as high as the higher one of two neighbours.
+        within = END_STEPS * float(v[1] - v[0])
+        inside = (v > self.ends[0] + within) & (v < self.ends[1] - within)
+        return self.profile[inside]
+
+    @property
+    def ring_top(self) -> float:
+        """How high (mm) the blank is over the ground away from its ends."""
+        return float(self.ring[:, 1].max(initial=0.0))
+
+    @property
     def widths(self) -> float:
-        """The share of its width that a straight cutter still has over the plane at the top of the blank, where it has least of it."""
-        v, high = self.profile.T
-        inside = (v >= self.ends[0]) & (v <= self.ends[1])
-        return self.development.least_width(v[inside], high[inside])
+        """The share of its width that a straight cutter still has over the plane at the top of the ring, where it has least of it."""
+        return self.development.least_width(*self.ring.T) if len(self.ring) else 1.0
 
     def watched(self, progress: Progress) -> DevelopedGround:
         """Return the same ground, which looks at another progress."""
