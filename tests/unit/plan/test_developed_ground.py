@@ -15,6 +15,7 @@ from trunnion.geometry.frame import WORLD
 from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Revolved
+from trunnion.model.tool import Tool
 from trunnion.plan.development.drives import (
     GroundCutter,
     layers_down,
@@ -172,6 +173,21 @@ def test_short_cutters_keep_their_shanks_off_what_roughing_leaves_high_up() -> N
     # Flutes that reach over the ring, and cutters that went first, meet nothing.
     assert shank_clearance(laid, mill(6.0, flute_length=10.0), roughed, 0.5) == 0.0
     assert shank_clearance(laid, mill(20.0, flute_length=7.0), roughed, 0.5) == 0.0
+
+
+def test_relieved_necks_go_along_flanges_that_came_finished() -> None:
+    """The flange is 12 mm high and the ring 9: flutes of 10 mm finish all of its side that is not turned, and the neck follows them."""
+    laid = ground()
+    beside = laid.band(*laid.ends)
+
+    def lowest(tool: Tool) -> float:
+        return float(laid.free(0.0, tool, 0.5, 1.0).intersect(beside).box()[0][1])
+
+    flush = lowest(mill(6.0, flute_length=30.0))
+    assert lowest(mill(6.0, flute_length=10.0)) == pytest.approx(flush, abs=1e-6)
+    assert lowest(mill(6.0, flute_length=8.0)) == pytest.approx(flush + 0.25, abs=0.01)
+    thick = replace(mill(6.0, flute_length=10.0), neck_diameter=6.0)
+    assert lowest(thick) == pytest.approx(flush + 0.5, abs=0.01)
 
 
 @pytest.mark.parametrize("slope", [0.3, -0.3, 1.8])

@@ -36,6 +36,8 @@ GAP = 0.01
 """rad of a cone's plane that stay free between the two ends of what goes round it."""
 LINES = 400
 """Places along the straight lines at which the blank's height is taken."""
+RELIEF = 0.099
+"""mm on the radius by which a neck is thinner than its cutter, at least, to go along a finished wall."""
 END_STEPS = 2.0
 """Steps between places along the straight lines within which of an end the blank is that of what stands beside the ground."""
 TURNS = (0.0, 1.0, 2.7)
@@ -177,10 +179,14 @@ class DevelopedGround:
         self, z: float, tool: Tool, around: float, above: float, within: Region | None = None
     ) -> Region:
         """Return the area that the envelope of a cutter may be in, its tip at a height: shank and holder keep `around` mm from the part
-        beside and `above` mm over it. Nothing outside `within` is looked at, nor anything in its way there (None: all the ground)."""
+        beside and `above` mm over it, but for a relieved neck where the flutes reach over the ring: what is beside it there came finished.
+        Nothing outside `within` is looked at, nor anything in its way there (None: all the ground)."""
         obstacles = [self._near(z + SKIM, within, 0.0)]
+        over_ring = z + tool.flute_length >= self.ring_top
         for z0, r0, _, r1 in tool.profile():
             more = max(r0, r1) - tool.radius
+            if over_ring and more <= -RELIEF:
+                continue
             height = z + max(SKIM, STEP * math.floor((z0 - above) / STEP))
             if more > -around:
                 grown = max(more + around, 0.0)
