@@ -30,7 +30,7 @@ from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
 from trunnion.toolpath.motion.load import LoadStock, PathLoad
-from trunnion.toolpath.motion.reorient import clearance_sphere, moved_over
+from trunnion.toolpath.motion.reorient import clearance_sphere, led_away, moved_over
 from trunnion.toolpath.motion.rolled import laid_flat, rolled
 from trunnion.toolpath.stock.views import StockViews
 
@@ -157,7 +157,7 @@ def _make_one(
                 if rolling
                 else turned(planned.path, setup.frame, own)
             )
-            path = moved_over(path, before, sphere)
+            path = led_away(moved_over(path, before, sphere), sphere)
             kept = OperationPath(
                 operation=operation.id, path=path, findings=tuple(planned.findings), key=key
             )

@@ -27,8 +27,9 @@ def followed(
 ) -> Floats:
     """Return the rotary angles (n, a) in rad at which a machine holds tool axes (n, 3), one after the other.
 
-    They go on from where the axes start_angle (a,) when that can be, else from the beginning that turns least. An axis within `near` rad of
-    the pole may be taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
+    They go on from where the axes start_angle (a,) when that can be, else from the beginning that turns least, a head leaned to its
+    positive side: with some paths to either side a linear axis would travel twice as far. An axis within `near` rad of the pole may be
+    taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
     """
     machine = work_position.machine
     through = _through_pole(axis, machine, near)
@@ -43,7 +44,8 @@ def followed(
     low, high = work_position.limits
     angles_used = np.zeros((len(axis), len(machine.rotary)))
     home = np.zeros(len(machine.rotary)) if start_angle is None else start_angle
-    tries: list[tuple[int, float, int, Floats]] = []
+    heads = [k for k, rotary in enumerate(machine.rotary) if rotary.carries == "tool"]
+    tries: list[tuple[int, bool, float, int, Floats]] = []
     # Spirals wind an axis up turn by turn: when it comes to its end it begins anew near the middle.
     unwound = (
         []
@@ -64,12 +66,13 @@ def followed(
         tries.append(
             (
                 -reached,
+                bool((start[heads] < -POLE).any()),
                 turned + float(np.abs(start - home).sum()),
                 len(tries),
                 np.array(angles_used),
             )
         )
-    reached, _, _, best = min(tries, key=lambda t: t[:3])
+    reached, *_, best = min(tries, key=lambda t: t[:4])
     if -reached < len(axis):
         raise Refused(
             f"operation {operation}, block {1 - reached}: {beyond(angles[-reached], work_position)}"

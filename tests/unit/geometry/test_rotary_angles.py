@@ -51,3 +51,18 @@ def test_where_an_axis_has_no_turns_left_it_begins_near_the_middle() -> None:
 def test_more_turns_than_the_axis_has_are_refused() -> None:
     with pytest.raises(Refused, match="can't be reached from the block before"):
         followed(spiral(5), place(2), None, 1e-3, "one")
+
+
+@pytest.mark.parametrize("around", [-170.0, -95.0, -10.0, 60.0, 120.0, 180.0])
+def test_a_head_leans_to_one_side_wherever_the_tool_comes_from(around: float) -> None:
+    """The nearer turn of the table would lean it to the other side for half of them, and X would travel twice as far."""
+    universal = WorkPosition(
+        machine=load_shop().machines["Universal 1250"],
+        foot=np.zeros(3),
+        centre=np.zeros(3),
+        radius=200.0,
+    )
+    turn = np.radians(around)
+    axis = np.array([[np.cos(turn), np.sin(turn), -0.2]])
+    angles = followed(axis / np.linalg.norm(axis), universal, None, 1e-3, "one")
+    assert 0.0 < angles[0, 0] < np.radians(105.0)

@@ -9,7 +9,14 @@ from pytest import approx
 
 from milling import SETUP, box_blank
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
-from trunnion.toolpath.motion.reorient import STEP, clearance_sphere, joined, moved_over, turn
+from trunnion.toolpath.motion.reorient import (
+    STEP,
+    clearance_sphere,
+    joined,
+    led_away,
+    moved_over,
+    turn,
+)
 
 UP = np.array([0.0, 0.0, 1.0])
 SWING = clearance_sphere(box_blank((-30, -20, -40), (30, 20, 0)), SETUP)
@@ -70,6 +77,20 @@ def test_the_last_rapid_goes_in_along_the_new_axis_to_where_the_path_begins():
     way = path.position[-2] - path.position[-3]
     assert path.position[-2] == approx([5.0, 0.0, 20.0])
     assert way / np.linalg.norm(way) == approx(-lean(40))
+
+
+def test_a_path_that_ends_pointing_up_is_led_out_until_no_way_up_comes_nearer():
+    path = led_away(standing(lean(115, 40)), SWING)
+    assert len(path) > 3 and (path.motion[2:] == Motion.RAPID).all()
+    tip, axis = path.position[-1], path.axis[-1]
+    assert axis[2] == approx(0.0, abs=1e-12)
+    # Out along its axis first, then round the sphere; straight up from there it stays behind a plane that touches it.
+    assert path.axis[2] == approx(lean(115, 40))
+    assert (path.position[2] - SWING.centre) @ lean(115, 40) == approx(SWING.radius)
+    for up in (0.0, 50.0, 500.0):
+        assert (tip + [0.0, 0.0, up] - SWING.centre) @ axis >= SWING.radius - 1e-9
+    for degrees in (0.0, 45.0, 90.0):
+        assert len(led_away(standing(lean(degrees)), SWING)) == 2
 
 
 def test_a_turn_straight_back_goes_over_the_top():

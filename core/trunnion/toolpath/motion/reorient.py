@@ -86,6 +86,23 @@ def moved_over(path: Toolpath, before: Pose | None, sphere: ClearanceSphere) -> 
     )
 
 
+def led_away(path: Toolpath, sphere: ClearanceSphere) -> Toolpath:
+    """Return a path after which the tool may be drawn straight up, as machines do before a tool change.
+
+    Upwards a tool that points upwards (its axis with z below 0) comes nearer to what stands over it: such a path goes on out of the sphere
+    and round it until the tool is level, when no way up comes nearer.
+    """
+    if not len(path) or path.axis[-1, 2] >= -tolerance.PARAMETRIC:
+        return path
+    tip, axis = path.position[-1], path.axis[-1]
+    level = np.array([axis[0], axis[1], 0.0])
+    size = float(np.linalg.norm(level))
+    level = level / size if size > tolerance.PARAMETRIC else np.array([1.0, 0.0, 0.0])
+    poses = [(sphere.above(tip, axis), axis)]
+    poses += [(sphere.centre + sphere.radius * a, a) for a in turn(axis, level)]
+    return Toolpath.join([path, _rapids(poses, path)])
+
+
 def joined(
     paths: Sequence[Toolpath], changes: Sequence[bool], sphere: ClearanceSphere
 ) -> tuple[Toolpath, ...]:
@@ -131,13 +148,16 @@ def _led(poses: Sequence[Pose], path: Toolpath) -> Toolpath:
             rows.append((tip, axis))
     if np.abs(rows[-1][0] - path.position[0]).max() <= tolerance.COINCIDENT:
         rows.pop()
-    n = len(rows)
-    if not n:
-        return path
-    lead = replace(
+    return Toolpath.join([_rapids(rows, path), path]) if rows else path
+
+
+def _rapids(poses: Sequence[Pose], path: Toolpath) -> Toolpath:
+    """Return rapids through poses as a path of its own, of the kind of another one."""
+    n = len(poses)
+    return replace(
         path,
-        position=np.array([t for t, _ in rows]),
-        axis=np.array([a for _, a in rows]),
+        position=np.array([t for t, _ in poses]),
+        axis=np.array([a for _, a in poses]),
         motion=np.full(n, Motion.RAPID),
         centre=np.full((n, 3), np.nan),
         feed=np.zeros(n),
@@ -145,4 +165,3 @@ def _led(poses: Sequence[Pose], path: Toolpath) -> Toolpath:
         dwell=None,
         cycles=(),
     )
-    return Toolpath.join([lead, path])
