@@ -173,7 +173,6 @@ def on_blank(samples: Samples, blank: Blank, frame: Frame, n_faces: int) -> Bool
     if not len(samples):
         return out
     near = blank.sides(blank.own(samples.point, frame), tolerance.SLIVER)
-    misses = np.zeros((n_faces, near.shape[1]))
-    np.add.at(misses, samples.face, ~near)
+    misses = [np.bincount(samples.face[~side], minlength=n_faces) for side in near.T]
     out[np.unique(samples.face)] = True
-    return out & (misses == 0).any(axis=1)
+    return out & (np.array(misses) == 0).any(axis=0)
