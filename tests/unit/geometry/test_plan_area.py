@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import shapely
 
-from trunnion.geometry.plane.plan_area import plan_area_above
+from trunnion.geometry.plane.plan_area import plan_area_above, tiled
 
 BASE = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0], [0.0, 10.0, 0.0]])
 TIP = np.array([5.0, 5.0, 10.0])
@@ -32,3 +33,32 @@ def test_a_funnel_is_all_above_a_height_but_its_tip(z):
 def test_a_corner_at_the_very_height_counts_as_above_it():
     area = plan_area_above(SIDES[:1] + [0.0, 0.0, -10.0], -10.0)
     assert area.area == pytest.approx(25.0, abs=30.0 * EVENED)
+
+
+def dome(n: int, lean: float) -> np.ndarray:
+    """Return the triangles (t, 3, 3) of a round top that leans over, n by n of them twice: some of its plan lies over itself."""
+    at = np.linspace(-10.0, 10.0, n + 1)
+    x, y = np.meshgrid(at, at, indexing="ij")
+    z = np.maximum(60.0 - x * x - y * y, 0.0) / 6.0
+    points = np.stack([x + lean * z, y, z], axis=-1)
+    a, b, c, d = points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]
+    return np.concatenate([np.stack(t, axis=2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.4, 1.7])
+@pytest.mark.parametrize("z", [-1.0, 0.5, 4.0])
+def test_pieces_joined_tile_by_tile_cover_what_they_covered(z: float, lean: float) -> None:
+    corners = dome(40, lean)
+    corners = corners[corners[:, :, 2].min(axis=1) > z]
+    pieces = np.asarray(shapely.polygons(corners[:, :, :2]))
+    up = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2] > 0.0
+    assert up.all() == (lean < 1.0)
+    joined = tiled(pieces, up)
+    assert len(joined) < 0.5 * len(pieces)
+    before, after = shapely.union_all(pieces), shapely.union_all(joined)
+    assert shapely.area(shapely.symmetric_difference(before, after)) < 1e-9 * shapely.area(before)
+
+
+def test_pieces_that_overlap_stay_as_they_are() -> None:
+    pieces = np.asarray(shapely.polygons(SIDES[:, :, :2] + np.arange(4)[:, None, None]))
+    assert sorted(shapely.area(tiled(pieces, np.ones(4, bool)))) == sorted(shapely.area(pieces))

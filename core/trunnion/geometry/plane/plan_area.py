@@ -7,12 +7,14 @@ import shapely
 from numpy.typing import NDArray
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 
 LAP, EVEN = 1e-3, 0.02
 """mm: how far pieces of an area lap over one another, and how far its rim is evened."""
+TILE, MOST, FITS = 100.0, 200.0, 1e-9
+"""Triangles that are joined at once, tiles along an area, and by what share of its area what is joined may be off."""
 
 
 def plan_area_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
@@ -27,11 +29,53 @@ def plan_area_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
     pieces = np.concatenate(
         [np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])), _cut_off(corners[~whole], z)]
     )
+    facing = np.concatenate([_signed_areas(corners[whole]), _signed_areas(corners[~whole])])
     # Each is grown by itself: then neighbours overlap, where they would only touch along an edge that is none the same.
-    area = shapely.union_all(shapely.buffer(pieces, grown + LAP, quad_segs=1))
+    area = shapely.union_all(shapely.buffer(tiled(pieces, facing >= 0.0), grown + LAP, quad_segs=1))
     return region_of(
         shapely.simplify(shapely.buffer(area, EVEN, join_style="mitre", mitre_limit=2.0), EVEN)
     )
+
+
+def tiled(pieces: NDArray[np.object_], facing: Bools) -> NDArray[np.object_]:
+    """Return plan areas (n,) of a mesh's triangles with those that face one way (n,) and lie in one tile joined along the edges they share.
+
+    That takes a small part of the time of a union. Where edges do not fit, or areas overlap, the area of what was joined says so, and the
+    pieces stay as they are.
+    """
+    area = shapely.area(pieces)
+    thin = area < tolerance.AREA
+    found = [pieces[thin]]
+    for side in (True, False):
+        mine = np.flatnonzero(~thin & (facing == side))
+        if not len(mine):
+            continue
+        middle = shapely.get_coordinates(shapely.centroid(pieces[mine]))
+        low, size = middle.min(axis=0), np.ptp(middle, axis=0)
+        edge = max(float(np.sqrt(np.prod(size) * TILE / len(mine))), float(size.max()) / MOST, LAP)
+        column, row = np.floor((middle - low) / edge).astype(np.int64).T
+        order = np.lexsort((row, column))
+        ends = np.flatnonzero(np.diff(column[order]) | np.diff(row[order])) + 1
+        for tile in np.split(mine[order], ends):
+            joined = _joined(pieces[tile], float(area[tile].sum()))
+            found.append(pieces[tile] if joined is None else np.array([joined]))
+    return np.concatenate(found)
+
+
+def _joined(pieces: NDArray[np.object_], area: float) -> shapely.Geometry | None:
+    """Return pieces joined along shared edges; None where that is not all of their `area` (mm2), or no area at all."""
+    try:
+        joined = shapely.coverage_union_all(pieces)
+    except shapely.errors.GEOSException:
+        return None
+    is_whole = abs(float(shapely.area(joined)) - area) <= FITS * area
+    return joined if is_whole and bool(shapely.is_valid(joined)) else None
+
+
+def _signed_areas(corners: Floats) -> Floats:
+    """Return the signed plan areas (t,) of triangles (t, 3, 3), positive seen anticlockwise."""
+    a, b = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
+    return np.asarray(0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]))
 
 
 def region_of(area: shapely.Geometry) -> Region:
