@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import subprocess
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+os.environ["TRUNNION_USER_FOLDER"] = str(Path(tempfile.gettempdir()) / "trunnion-tests-no-folder")
+"""No test reads the person's own plan library: one that needs a library makes it in a folder of its own."""
 
 LONGEST_FIRST = (
     "test_cli_verify",

@@ -146,9 +146,12 @@ def with_suppressed(id: str, suppressed: bool) -> Edit:
 
 def with_operation_choice(id: str, key: str, value: Value) -> Edit:
     """Return the edit that chooses a strategy's setting for one operation only."""
-    return _with_operation(
-        id, lambda o: replace(o, choices={**o.choices, key: value}, by_hand=True)
-    )
+
+    def change(o: Operation) -> Operation:
+        own = tuple(dict.fromkeys((*o.own_choices, key)))
+        return replace(o, choices={**o.choices, key: value}, own_choices=own, by_hand=True)
+
+    return _with_operation(id, change)
 
 
 def with_operation_before(id: str, before: str | None) -> Edit:

@@ -145,24 +145,24 @@ def small_casing() -> Any:
 
 
 @cache
-def short_ring() -> Any:
+def short_ring(theta: float = 20.0, z: float = 13.0) -> Any:
     """Return a short ring with two bosses, one of them drilled, and a flange at either end: the least that all of a casing's operations are
-    on."""
+    on. The drilled boss is at an angle (degrees) and a height (mm): off the middle it is nearer to a flange."""
     shell = Shell(radius=24.0, slope=0.0, length=26.0, wall=3.0, flange=4.0, rim=5.0, rib=0.0)
     bosses = [
         MadeBoss(
             outline=outline,
-            theta=theta,
-            z=13.0,
+            theta=angle,
+            z=height,
             height=3.0,
             tilt=0.0,
             fillet=0.0,
             sizes=sizes,
             hole=hole,
         )
-        for outline, theta, sizes, hole in (
-            ("circle", 20.0, (4.0, 4.0), 4.0),
-            ("rectangle", 200.0, (7.0, 7.0, 2.0), 0.0),
+        for outline, angle, height, sizes, hole in (
+            ("circle", theta, z, (4.0, 4.0), 4.0),
+            ("rectangle", 200.0, 13.0, (7.0, 7.0, 2.0), 0.0),
         )
     ]
     body = shell.solid()

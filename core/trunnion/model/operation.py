@@ -108,6 +108,8 @@ class Operation:
     that must come before it; `direction`, in the setup's frame, where the tool comes from (3 + 2 axes where that is not z); `by_hand` marks
     a person's change; `suppressed` keeps it in the tree without cutting; `avoid` are boxes in its cutting frame that its tip keeps out of
     (a tool that leans knows none); `others` the ids of further features that it machines with the same tool and data, as of equal holes.
+    What a plan can be taught by: `planned_tool` names the cutter that the planner took where a person or a plan of the library has another
+    one in its place, `own_choices` are the keys of the choices that these gave; `taught_data` marks cutting data of such a plan.
     """
 
     id: str
@@ -127,6 +129,14 @@ class Operation:
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
     avoid: tuple[KeepOutBox, ...] = added((), written=False)
     others: tuple[str, ...] = added((), written=False)
+    planned_tool: str = added("", written=False)
+    own_choices: tuple[str, ...] = added((), written=False)
+    taught_data: bool = added(False, written=False)
+
+    @property
+    def keeps_data(self) -> bool:
+        """Whether its cutting data are given, by a person or by a plan of the library, and not computed again."""
+        return self.by_hand or self.taught_data
 
     @property
     def all_features(self) -> tuple[str, ...]:

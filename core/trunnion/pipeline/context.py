@@ -19,6 +19,7 @@ from trunnion.pipeline.planning.open_faces import OpenSettings, with_backing
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import choose, digest
 from trunnion.shop import Shop
+from trunnion.shop.library import PlanLibrary
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -30,10 +31,11 @@ DECIMALS = 7
 
 @dataclass(frozen=True)
 class Context:
-    """The part that a session programs and the shop it is programmed for."""
+    """The part that a session programs, the shop it is programmed for and its plan library, where there is one."""
 
     part: Part
     shop: Shop
+    library: PlanLibrary | None = None
     _skins: dict[float, Skin] = field(default_factory=dict, init=False, repr=False, compare=False)
     _machined: dict[str, Context] = field(
         default_factory=dict, init=False, repr=False, compare=False
@@ -67,7 +69,7 @@ class Context:
             return self
         key = digest(choose(OpenSettings, choices))
         if key not in self._machined:
-            made = Context(with_backing(self.part, choices, progress), self.shop)
+            made = Context(with_backing(self.part, choices, progress), self.shop, self.library)
             self._machined.clear()
             self._machined[key] = made
         return self._machined[key]
@@ -94,8 +96,8 @@ class Context:
 class Contexts:
     """The contexts of one part file: of the part as read, and of what is left of it after cuts, each made once."""
 
-    def __init__(self, part: Part, shop: Shop) -> None:
-        self._made: dict[tuple[Cut, ...], Context] = {(): Context(part, shop)}
+    def __init__(self, part: Part, shop: Shop, library: PlanLibrary | None = None) -> None:
+        self._made: dict[tuple[Cut, ...], Context] = {(): Context(part, shop, library)}
 
     def after(self, cuts: tuple[Cut, ...], progress: Progress = NO_PROGRESS) -> Context:
         """Return the context of the part after some cuts; raise `BadInput` when one of them can't be made."""
@@ -104,5 +106,5 @@ class Contexts:
             progress.at(0.0, f"cutting face {cuts[-1].face}")
             from trunnion.part.cut import divided
 
-            self._made[cuts] = Context(divided(before.part, cuts[-1]), before.shop)
+            self._made[cuts] = Context(divided(before.part, cuts[-1]), before.shop, before.library)
         return self._made[cuts]

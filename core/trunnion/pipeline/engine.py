@@ -28,6 +28,7 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.report.picture_process import Ahead, Drawing, here
 from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import load_shop
+from trunnion.shop.library import PlanLibrary, library_file
 from trunnion.store.project_file import PROJECT_SUFFIX
 from trunnion.verify.settings import ProofSettings
 
@@ -45,11 +46,13 @@ _LAID = "toolpath"
 class Engine:
     """The one door to the core. Sessions go in and come out; only the part and the catalogues stay here.
 
-    `user_folder` is a folder of a shop's own tools, materials, machines and plans; the default is the user's data folder.
+    `user_folder` is a folder of a shop's own tools, materials, machines and plans, with its plan `library`; without it the catalogues are
+    the program's own, and the library is that of the user's data folder.
     """
 
     def __init__(self, user_folder: Path | None = None) -> None:
         self._shop = load_shop(user_folder)
+        self.library = PlanLibrary(library_file(user_folder))
         self._contexts: Contexts | None = None
         self._file: tuple[bytes, str] = (b"", "")
         self._playback: Playback | None = None
@@ -76,7 +79,7 @@ class Engine:
             part = reading.part(share) if reading else read_part(path, solid=solid, progress=share)
             with part.watched(progress.part(0.7, 1.0)):
                 part.graph()
-        self._contexts = Contexts(part, self._shop)
+        self._contexts = Contexts(part, self._shop, self.library)
         self._file = (path.read_bytes(), path.suffix)
         return Session(part=self.context.facts)
 
@@ -104,7 +107,7 @@ class Engine:
             raise BadInput(
                 f"{session.part.name}: the part kept with the project is not the one its plan was made for; open the part anew"
             )
-        contexts = Contexts(part, self._shop)
+        contexts = Contexts(part, self._shop, self.library)
         contexts.after(session.cuts, progress.part(0.9, 1.0))
         self._contexts, self._file = contexts, (data, suffix)
 

@@ -19,6 +19,7 @@ from trunnion.pipeline.context import Context
 from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
+from trunnion.pipeline.planning.library import library_choice, library_key, routed
 from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
 from trunnion.pipeline.planning.open_faces import OpenSettings, frame_and_finding
 from trunnion.pipeline.planning.scene import SessionContext
@@ -34,6 +35,7 @@ from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.cutting.optimization.settings import GeneticSettings, OptimizeSettings
 from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.peak import overloads
+from trunnion.plan.library.settings import LibrarySettings
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
@@ -85,6 +87,7 @@ def _route_settings() -> tuple[type, ...]:
         dict.fromkeys(
             (
                 SetupSettings,
+                LibrarySettings,
                 *(
                     group
                     for name in registry.names(PLANNERS)
@@ -183,18 +186,17 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
             )
     setups = make_setups(recognition, session.blank, setup)
     planner.can_plan(context.part)
-    process = planner.route(
-        RouteJob(
-            recognition=recognition,
-            sizes=session.sizes,
-            blank=session.blank,
-            setups=setups,
-            shop=context.shop,
-            context=SessionContext(context, session),
-            choices=session.choices,
-            progress=progress,
-        )
+    job = RouteJob(
+        recognition=recognition,
+        sizes=session.sizes,
+        blank=session.blank,
+        setups=setups,
+        shop=context.shop,
+        context=SessionContext(context, session),
+        choices=session.choices,
+        progress=progress,
     )
+    process = routed(planner, job, library_choice(session, context))
     process = with_manual_operations(session.process, process)
     return Result(
         session=replace(session, setups=process.setups or setups, process=process),
@@ -334,7 +336,13 @@ STEP_TABLE: tuple[Step, ...] = (
         work=_route,
         settings=_route_settings,
         uses=_used_to_route,
-        reads=lambda s, b: (b.part.digest, s.recognition, s.blank, b.shop.digest),
+        reads=lambda s, b: (
+            b.part.digest,
+            s.recognition,
+            s.blank,
+            b.shop.digest,
+            *library_key(s, b),
+        ),
         done=lambda s: s.process is not None,
     ),
     Step(

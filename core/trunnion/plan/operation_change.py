@@ -25,7 +25,9 @@ from trunnion.units import trimmed
 WHY = "a person chose it"
 """What an operation's rule says of a cutter that was changed by hand."""
 BY_HAND = "set by hand"
-SPEED_RULES, FEED_RULES = ("vc ", "n "), ("fz ", "f ", "vf ")
+SPINDLE_RULE, FEED_RULE = "n ", "vf "
+"""How sentences of cutting data on a spindle speed and a feed that are set by hand begin."""
+SPEED_RULES, FEED_RULES = ("vc ", SPINDLE_RULE), ("fz ", "f ", FEED_RULE)
 """How sentences of cutting data on speeds and on feeds begin: they do not hold any more for what is set by hand."""
 
 
@@ -76,27 +78,46 @@ def with_change(
     before = process.operation(id)
     if not before.tool.rotates:
         raise BadInput(f"{id}: only operations of rotating tools can be changed by hand")
-    material, machine = (
-        shop.material(process.material),
-        shop.machine(process.setup(before.setup).machine),
-    )
-    cutting = checked(choose(CuttingSettings, {**choices, **before.choices}))
+    material = shop.material(process.material)
     if change.tool and change.tool != before.tool.name:
         tool = _tool_named(change.tool, before, material, shop)
         process = with_cutter(process, before, tool, WHY)
+        cutting = checked(choose(CuttingSettings, {**choices, **before.choices}))
         computed = recomputed(
-            replace(process.operation(id), by_hand=False), process, material, shop, cutting
+            replace(process.operation(id), by_hand=False, taught_data=False),
+            process,
+            material,
+            shop,
+            cutting,
         )
-        process = process.with_operation(replace(computed, by_hand=True))
-    changed = process.operation(id)
-    if change.spindle > 0.0:
-        changed = _with_spindle(changed, change.spindle, machine, cutting)
-    if change.feed > 0.0:
-        changed = _with_feed(changed, change.feed, machine)
+        planned = before.planned_tool or before.tool.name
+        process = process.with_operation(replace(computed, by_hand=True, planned_tool=planned))
+    changed = with_speeds(process, process.operation(id), change, shop, choices)
     if changed is before:
         return process
     data = _with_load(changed, material)
     return numbered(process.with_operation(replace(data, by_hand=True)))
+
+
+def with_speeds(
+    process: ProcessTree,
+    operation: Operation,
+    change: OperationChange,
+    shop: Shop,
+    choices: Mapping[str, Value],
+) -> Operation:
+    """Return an operation of a process with a spindle speed and a feed as given, the rest of its data after them.
+
+    Raises `BadInput` for what its machine does not have.
+    """
+    machine = shop.machine(process.setup(operation.setup).machine)
+    cutting = checked(choose(CuttingSettings, {**choices, **operation.choices}))
+    changed = operation
+    if change.spindle > 0.0:
+        changed = _with_spindle(changed, change.spindle, machine, cutting)
+    if change.feed > 0.0:
+        changed = _with_feed(changed, change.feed, machine)
+    return changed if changed is operation else _with_load(changed, shop.material(process.material))
 
 
 def _tool_named(name: str, operation: Operation, material: Material, shop: Shop) -> Tool:

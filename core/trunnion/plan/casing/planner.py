@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from trunnion.findings import Finding, Severity
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.session import SizeEntry
 from trunnion.plan.casing.drives import holes_driven, plane_driven, sides_driven
 from trunnion.plan.casing.grounds import fine_mesh
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
@@ -24,6 +25,7 @@ from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import SetupSettings, make_setups
+from trunnion.plan.size import PART
 from trunnion.plan.turning.drive import RevolvedDrive
 from trunnion.plan.turning.settings import TurningSettings
 from trunnion.plan.typical import typical_plan
@@ -36,6 +38,9 @@ NEEDS_AXES = "bosses are milled along their own normals"
 LEANING = " that leans the tool by 90 degrees"
 """Why a machine without rotary axes is refused, and what they must do."""
 
+DIAMETERS, WALL = ("smallest_diameter", "largest_diameter"), "wall_thickness"
+"""Names of the sizes that casings are compared by."""
+
 
 class CasingPlanner:
     """Plans the milled side of a casing: bottoms laid flat, bosses along their normals, holes along their axes."""
@@ -43,6 +48,19 @@ class CasingPlanner:
     name, noun = "casing", "casings"
     settings: tuple[type, ...] = (RouteSettings, CasingRouteSettings, TurningSettings)
     cutter_rules: tuple[str, ...] = CUTTER_RULES
+
+    def principal_sizes(self, sizes: Sequence[SizeEntry]) -> Mapping[str, float]:
+        """Return the largest and the smallest diameter, the length along the axis and the thinnest wall (mm) of a casing."""
+        diameters = [e.value for e in sizes if e.name in DIAMETERS]
+        walls = [e.value for e in sizes if e.name == WALL]
+        lengths = [e.value for e in sizes if e.feature == PART and e.name == "height"]
+        found = {
+            "largest_diameter": max(diameters, default=0.0),
+            "smallest_diameter": min(diameters, default=0.0),
+            "length": max(lengths, default=0.0),
+            WALL: min(walls, default=0.0),
+        }
+        return {name: value for name, value in found.items() if value > 0.0}
 
     def can_plan(self, part: Part) -> None:
         """Raise `BadInput` for faces that enclose no material."""

@@ -161,8 +161,8 @@ def recomputed(
     shop: Shop,
     settings: CuttingSettings,
 ) -> Operation:
-    """Return an operation with the data of the tables under these limits; one that a person set by hand as it is."""
-    if operation.by_hand:
+    """Return an operation with the data of the tables under these limits; one that keeps its data as it is."""
+    if operation.keeps_data:
         return operation
     machine = shop.machine(process.setup(operation.setup).machine)
     if isinstance(operation.tool, TurningTool):

@@ -59,7 +59,7 @@ def with_peak(
         return Peak(met=met, power=_power(operation, data, met, material))
 
     data = operation.data
-    if not operation.by_hand:
+    if not operation.keeps_data:
         data = _shallower(_slower(data, peak, material), peak, operation)
     found = peak(data)
     torque = NEWTON_METRES * found.power / data.spindle

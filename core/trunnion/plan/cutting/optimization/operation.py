@@ -75,7 +75,7 @@ def can_be_optimised(operation: Operation) -> bool:
         operation.tool.rotates
         and operation.kind not in AXIAL
         and operation.cutter.form != DRILL
-        and not operation.by_hand
+        and not operation.keeps_data
     )
 
 
