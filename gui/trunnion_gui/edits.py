@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from trunnion.findings import Refused
 from trunnion.model.feature import Recognition
@@ -16,12 +17,23 @@ Edit = Callable[[Session], Session]
 
 
 @dataclass(frozen=True, slots=True)
+class ExternalEdit:
+    """An edit of what is kept outside of the session, such as the plan library: the worker's requests that take it back and do it again,
+    both with the session and a `subject`."""
+
+    undo: Callable[..., Any]
+    redo: Callable[..., Any]
+    subject: Any
+
+
+@dataclass(frozen=True, slots=True)
 class HistoryEntry:
-    """One state in the history: what led to it, the session, and the gesture that may still go on."""
+    """One state in the history: what led to it, the session, the gesture that may still go on, and what was changed outside of it."""
 
     label: str
     session: Session
     gesture: str = ""
+    external: ExternalEdit | None = None
 
 
 class History:
@@ -51,13 +63,30 @@ class History:
         return self._entries[self._at + 1].label if self._at + 1 < len(self._entries) else ""
 
     @property
+    def undo_external(self) -> ExternalEdit | None:
+        """What `undo` has to take back outside of the session first, if anything."""
+        return self._entries[self._at].external if self._at else None
+
+    @property
+    def redo_external(self) -> ExternalEdit | None:
+        """What `redo` has to do again outside of the session first, if anything."""
+        following = self._entries[self._at + 1 : self._at + 2]
+        return following[0].external if following else None
+
+    @property
     def is_dirty(self) -> bool:
         """Whether the session differs from the one last saved."""
         return self.session is not self._saved
 
-    def push(self, label: str, session: Session, gesture: str = "") -> None:
-        """Add a state; what could be redone is forgotten. An edit that changed nothing adds nothing."""
-        if session is self.session:
+    def push(
+        self,
+        label: str,
+        session: Session,
+        gesture: str = "",
+        external: ExternalEdit | None = None,
+    ) -> None:
+        """Add a state; what could be redone is forgotten. An edit that changed nothing, inside or outside, adds nothing."""
+        if session is self.session and external is None:
             return
         goes_on = (
             gesture
@@ -65,7 +94,7 @@ class History:
             and self._at == len(self._entries) - 1
         )
         del self._entries[self._at + (0 if goes_on else 1) :]
-        self._entries.append(HistoryEntry(label, session, gesture))
+        self._entries.append(HistoryEntry(label, session, gesture, external))
         self._at = len(self._entries) - 1
 
     def undo(self) -> Session:

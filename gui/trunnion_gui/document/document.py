@@ -7,7 +7,7 @@ finished before it was cancelled, refused or crashed are kept, as one entry of t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from PySide6.QtCore import QObject, Signal
@@ -22,8 +22,9 @@ from trunnion.settings import Value
 from trunnion_gui import edits
 from trunnion_gui.document.files import Files
 from trunnion_gui.document.jobs import Finish, Job, Jobs
+from trunnion_gui.document.library import Library
 from trunnion_gui.document.selection import SelectionModel
-from trunnion_gui.edits import Edit, History
+from trunnion_gui.edits import Edit, ExternalEdit, History
 from trunnion_gui.i18n import tr
 from trunnion_gui.worker.drawing import DrawnMesh
 from trunnion_gui.worker.requests import SessionState, SettingsGroup, Work
@@ -32,7 +33,7 @@ from trunnion_gui.worker.worker import ENGINE, Reply
 
 
 class Document(QObject):
-    """The open part's session and everything that happens to it: `jobs`, `files` and `selection` are its parts."""
+    """The open part's session and everything that happens to it: `jobs`, `files`, `selection` and `library` are its parts."""
 
     changed = Signal()
     """The shown session is another one, or its states are."""
@@ -58,6 +59,7 @@ class Document(QObject):
         self._settled: tuple[dict[str, str], tuple[PostedFile, ...]] = {}, ()
         self.jobs = Jobs(factory, self.notice, self)
         self.files, self.selection = Files(self), SelectionModel(self)
+        self.library = Library(self)
         self.jobs.changed.connect(self._begin)
         self.jobs.staged.connect(self._take_stage)
         self.jobs.stopped.connect(self._stop)
@@ -151,12 +153,20 @@ class Document(QObject):
 
     # the session
 
-    def keep(self, label: str, state: SessionState, drawing: DrawnMesh | None = None) -> None:
-        """Take a session into the history, with what is drawn of its part where its faces are others."""
+    def keep(
+        self,
+        label: str,
+        state: SessionState,
+        drawing: DrawnMesh | None = None,
+        external: ExternalEdit | None = None,
+    ) -> None:
+        """Take a session into the history, with what is drawn of its part where its faces are others, and what changed outside of it."""
         if drawing is not None:
             self._drawings[state.session.cuts] = drawing
-        self.history.push(label, state.session)
-        self._show(state.session, state.steps, state.programs)
+        # A change outside leaves the session as it is: what came back from the worker is a copy of it.
+        session = self.session if external is not None else state.session
+        self.history.push(label, session, external=external)
+        self._show(session, state.steps, state.programs)
 
     def install(self, state: SessionState, drawing: DrawnMesh, is_saved: bool) -> None:
         """Take up the session of another part, with an empty history."""
@@ -197,17 +207,36 @@ class Document(QObject):
 
     def undo(self) -> None:
         """Take the last edit or run back."""
-        if self.jobs.is_free():
+        external = self.history.undo_external
+        if external is not None:
+            label = f"{tr('Undo')}: {self.history.undo_label}"
+            self._go_external(external.undo, external, label, self.history.undo)
+        elif self.jobs.is_free():
             self._show(self.history.undo())
             self._request_states()
 
     def redo(self) -> None:
         """Bring back what was undone."""
-        if self.jobs.is_free():
+        external = self.history.redo_external
+        if external is not None:
+            label = f"{tr('Redo')}: {self.history.redo_label}"
+            self._go_external(external.redo, external, label, self.history.redo)
+        elif self.jobs.is_free():
             self._show(self.history.redo())
             self._request_states()
 
     # inside
+
+    def _go_external(
+        self, work: Work, edit: ExternalEdit, label: str, step: Callable[[], Session]
+    ) -> None:
+        """Change what is kept outside of the session, and go a step in the history once that is done."""
+
+        def finish(state: SessionState) -> None:
+            self._show(step(), state.steps, state.programs)
+            self.library.refresh()
+
+        self.request(work, label, edit.subject, finish=finish)
 
     def _needs_part(self) -> bool:
         if not self.has_part:

@@ -50,7 +50,7 @@ class Jobs(QObject):
         self.job: Job | None = None
         self._notice = notice
         self._doing = ""
-        self._queries: dict[int, tuple[str, Finish]] = {}
+        self._queries: dict[int, tuple[str | Work, Finish]] = {}
         self._then: Callable[[], None] | None = None
         self.worker = Worker(factory, self)
         self.worker.replied.connect(self._receive)
@@ -95,15 +95,15 @@ class Jobs(QObject):
         """Do something right after the running job is done; never when it stops short."""
         self._then = go_on
 
-    def query(self, command: str, *arguments: Any, finish: Finish) -> None:
+    def query(self, command: str | Work, *arguments: Any, finish: Finish) -> None:
         """Send a query that blocks nothing; `finish` gets its reply."""
         self._queries[self.worker.send(command, *arguments)] = command, finish
 
-    def awaits(self, command: str) -> bool:
+    def awaits(self, command: str | Work) -> bool:
         """Return whether a query of a verb has no reply yet."""
         return any(running == command for running, _ in self._queries.values())
 
-    def forget(self, command: str) -> None:
+    def forget(self, command: str | Work) -> None:
         """Drop the queries of a verb."""
         for number in [n for n, (running, _) in self._queries.items() if running == command]:
             self.worker.forget(number)

@@ -15,6 +15,7 @@ _MENU_OF = {
     "run": "Steps",
     "step": "Steps",
     "job": "Steps",
+    "library": "Steps",
     "view": "View",
     "help": "Help",
 }
@@ -196,6 +197,24 @@ def add_general_commands(window: WindowAccess) -> None:
             f"{text}: what is stale up to here",
             has_part,
         )
+    command(
+        "library.add",
+        "Add to library",
+        document.library.add,
+        "",
+        "",
+        "Keep the process as a plan for similar parts",
+        document.library.can_add,
+    )
+    command(
+        "library.remove",
+        "Remove from library",
+        document.library.remove,
+        "",
+        "",
+        "Take the selected plan out of the library",
+        document.library.can_remove,
+    )
     command(
         "job.cancel",
         "Cancel the running job",

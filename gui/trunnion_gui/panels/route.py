@@ -1,9 +1,11 @@
-"""Panel 4: the route: setups, operations and the plan they come from."""
+"""Panel 4: the route: setups, operations, the plan they come from, and the plan library."""
 
 from __future__ import annotations
 
 from trunnion_gui.i18n import tr
+from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import amount, counted
+from trunnion_gui.panels.library import LibraryBlock
 from trunnion_gui.widgets.panel import Panel
 
 
@@ -12,7 +14,17 @@ class RoutePanel(Panel):
 
     command = "step.route"
 
+    def build(self) -> None:
+        super().build()
+        self.library = LibraryBlock(self.document, self.registry)
+        self.content.addWidget(self.library)
+
+    def use_theme(self, theme: Theme) -> None:
+        self.library.use_theme(theme)
+        super().use_theme(theme)
+
     def fill(self) -> None:
+        self.library.follow()
         process = self.document.shown.process
         if process is None:
             self.result.setText("")
