@@ -36,6 +36,7 @@ def plan(name: str = "ring A", signature: PartSignature = RING, **changes) -> Ta
     fields = {
         "date": "2026-03-01",
         "part": "ring",
+        "part_digest": "0123456789abcdef",
         "base": "Casing",
         "stages": (stage("sides"), stage("feet", on=("pocket",), after_all=("sides",))),
         "operations": (

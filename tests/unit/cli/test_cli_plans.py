@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import samples
 from trunnion.cli.main import BAD, DONE, main
+
+
+def sibling_block() -> Any:
+    """Return the block with a pocket elsewhere in space: another file of a part that is wholly alike."""
+    return samples.moved(samples.block_with_pocket_shape(), (5.0, 0.0, 0.0))
 
 
 def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
@@ -35,11 +41,11 @@ def shop(tmp_path: Path) -> list[str]:
 def test_a_process_goes_in_is_found_again_followed_and_taken_out(
     shop: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    part = str(samples.block_with_pocket())
+    taught, part = str(samples.block_with_pocket()), str(samples.written(sibling_block()))
     added = json.loads(
         said(
             capsys,
-            *("plans", "add", part, "--name", "block", "--date", "2026-03-01", "--json", *shop),
+            *("plans", "add", taught, "--name", "block", "--date", "2026-03-01", "--json", *shop),
         )
     )
     assert added["file"].endswith("plan-library.sqlite")
@@ -58,6 +64,9 @@ def test_a_process_goes_in_is_found_again_followed_and_taken_out(
     assert (match["name"], match["similarity"], found["followed"]) == ("block", 1.0, "block")
     assert "the same sizes" in match["reasons"]
     assert found["signature"] == listed["signature"]
+    # The part itself needs no plan of its own.
+    own = json.loads(said(capsys, "plans", "match", taught, "--json", *shop))
+    assert own["matches"][0]["similarity"] == 1.0 and own["followed"] is None
     words = said(capsys, "plans", "match", part, "--quiet", *shop)
     assert "100 %" in words and "a route follows block" in words
 

@@ -180,6 +180,16 @@ def test_a_part_that_is_not_similar_enough_says_what_is_nearest(library):
     assert library_choice(session, context).plan is not None
 
 
+def test_a_part_does_not_follow_its_own_plan_unless_that_is_named(library):
+    """A finished and proven process must not go stale because it was added to the library."""
+    engine, session = finished()
+    context = with_library(finished, library)
+    step = next(s for s in steps() if s.name == "route")
+    assert step.key(session, context) == session.records["route"].key
+    choice = library_choice(engine.with_choices(session, {"route.library.use": "RING"}), context)
+    assert choice.plan.name == "RING"
+
+
 def test_off_and_a_named_typical_plan_leave_the_library_alone(library):
     context = with_library(sibling, library)
     engine, session = sibling()

@@ -84,7 +84,15 @@ def changed(tree: ProcessTree, id: str, **values) -> ProcessTree:
 
 def taught(tree: ProcessTree):
     return taught_plan(
-        tree, RECOGNITION, BASE, SIGNATURE, name="A", date="2026-01-01", part="ring", settings={}
+        tree,
+        RECOGNITION,
+        BASE,
+        SIGNATURE,
+        name="A",
+        date="2026-01-01",
+        part="ring",
+        part_digest="",
+        settings={},
     )
 
 
@@ -169,7 +177,7 @@ def test_what_one_of_several_has_otherwise_is_named_and_not_taught():
         features=(*RECOGNITION.features, Feature(id="boss-04", kind="boss", faces=())),
     )
     result = taught_plan(
-        tree, recognition, BASE, SIGNATURE, name="A", date="", part="", settings={}
+        tree, recognition, BASE, SIGNATURE, name="A", date="", part="", part_digest="", settings={}
     )
     assert all(not o.choices for o in result.plan.operations)
     assert [(f.code, f.where) for f in result.findings] == [
@@ -226,6 +234,20 @@ def test_a_gap_that_is_too_narrow_gets_the_planners_own_cutter():
         f"{D16} does not fit here (the gap is too narrow for D 16, D 10 goes in)"
         in (after.rules[-1])
     )
+
+
+def test_the_cutter_of_the_plan_that_is_nearest_to_the_planners_is_named():
+    tree = process(
+        made("side", "boss-01", D16),
+        made("side", "boss-02", D12),
+        made("side", "boss-03", "AL3-stub D6 R0.5"),
+    )
+    finishing = [replace(o, faces=(n,)) for n, o in enumerate(tree.operations, 1)]
+    plan = taught(process(*finishing)).plan
+    here = replace(made("side", "boss-01", D10), faces=(1,))
+    rule = follow(process(here), plan).process.operations[0].rules[-1]
+    assert f"{D12} does not fit here (the gap is too narrow for D 12, D 10 goes in)" in rule
+    assert D16 not in rule
 
 
 def test_a_wider_gap_keeps_the_taught_cutter_where_it_reaches_as_deep():

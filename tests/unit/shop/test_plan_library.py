@@ -64,8 +64,9 @@ def test_the_most_similar_plan_comes_first_with_its_reasons(library):
     found = library.matches(RING)
     assert [m.plan.name for m in found] == ["ring A", "another"]
     assert found[0].similarity.value == 1.0
-    # 1 of 8 features, half a diameter and no wall of two sizes: (5/8 + 3/4 + 1 + 1) / 10.
-    assert found[1].similarity.value == approx((5 / 8 + 3 * 0.25 + 2) / 10)
+    # 1 of 8 features, a third of one kind of three, half a diameter and no wall of two sizes.
+    features = (1 / 8 + (1 / 3) / 3) / 2
+    assert found[1].similarity.value == approx((5 * features + 3 * 0.25 + 2) / 10)
     assert "1 of 3 kinds of features and 1 of 8 features in common" in found[1].similarity.words
     assert "largest diameter 200 and 400 mm" in found[1].similarity.words
     assert "only one has a wall thickness" in found[1].similarity.words

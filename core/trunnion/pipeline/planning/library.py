@@ -78,7 +78,10 @@ def matches(session: Session, context: Context) -> tuple[PlanMatch, ...]:
 
 
 def library_choice(session: Session, context: Context) -> LibraryChoice:
-    """Return the plan that the route of a session follows, and findings that say why; raise `BadInput` for a named one that can't be."""
+    """Return the plan that the route of a session follows, and findings that say why; raise `BadInput` for a named one that can't be.
+
+    A plan that this very part has taught is followed only where it is named: a finished process is not stale because it was added.
+    """
     settings = checked(choose(LibrarySettings, session.choices))
     signature, library = signature_of(session, context), context.library
     if settings.use == OFF or signature is None or library is None:
@@ -88,8 +91,9 @@ def library_choice(session: Session, context: Context) -> LibraryChoice:
     if session.choices.get(PLAN):
         return NOTHING
     try:
-        found = library.matches(signature)
-        is_empty = not found and not library.names()
+        all_found = library.matches(signature)
+        found = tuple(m for m in all_found if m.plan.part_digest != context.part.digest)
+        others = len(library.names()) - len(all_found) + len(found)
     except BadInput as reason:
         return LibraryChoice(
             findings=(
@@ -100,7 +104,7 @@ def library_choice(session: Session, context: Context) -> LibraryChoice:
                 ),
             )
         )
-    if is_empty:
+    if not others:
         return NOTHING
     return _most_similar(found, settings.similarity)
 
@@ -231,16 +235,16 @@ def _with_strategy_settings(
     return replace(process, operations=tuple(operations))
 
 
-def teach(
-    session: Session, context: Context, *, name: str, date: str, part: str = ""
-) -> TaughtResult:
+def teach(session: Session, context: Context, *, name: str, date: str) -> TaughtResult:
     """Return the plan that a session's process teaches, under a name and with a date as given; nothing is stored.
 
     Raises `BadCall` before there is a process, `BadInput` where the plan that it was made by is gone.
     """
-    process, recognition = session.process, session.recognition
+    part, process, recognition = session.part, session.process, session.recognition
     signature = signature_of(session, context)
-    if process is None or recognition is None or signature is None or not process.operations:
+    if part is None or recognition is None or signature is None:
+        raise BadCall("no operations yet: recognize the part first, and add the finished process")
+    if process is None or not process.operations:
         raise BadCall("no operations yet: generate the route first, and add the finished process")
     base, settings = _base(process, context, recognition.family)
     planner = planner_for(recognition.family)
@@ -263,14 +267,13 @@ def teach(
         signature,
         name=name,
         date=date,
-        part=part or (session.part.name if session.part is not None else ""),
+        part=part.name,
+        part_digest=part.digest,
         settings={**settings, **own},
     )
 
 
-def add_to_library(
-    session: Session, context: Context, *, name: str, date: str, part: str = ""
-) -> TaughtResult:
+def add_to_library(session: Session, context: Context, *, name: str, date: str) -> TaughtResult:
     """Add what a session's process teaches to the library and return it (`teach`).
 
     Raises `BadInput` for a name that is in use or that has a meaning of its own, and for a library that can't be written.
@@ -280,7 +283,7 @@ def add_to_library(
     if name in (AUTOMATIC, OFF) or name in context.shop.plans:
         what = "a typical plan" if name in context.shop.plans else "a value of route.library.use"
         raise BadInput(f"{name} is the name of {what}: choose another name for the plan")
-    result = teach(session, context, name=name, date=date, part=part)
+    result = teach(session, context, name=name, date=date)
     context.library.add(result.plan)
     return result
 

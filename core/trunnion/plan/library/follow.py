@@ -6,6 +6,7 @@ choice is kept with the reason.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -77,12 +78,11 @@ class _Work:
         self, process: ProcessTree, operation: Operation, known: Sequence[TaughtOperation]
     ) -> tuple[ProcessTree, bool]:
         """Return the process with an operation as the plan has it, and whether the plan's cutter is taken."""
-        taught, why = self._taught(process, operation, known)
+        taught, refused = self._taught(process, operation, known)
         if taught is None:
-            names = " or ".join(dict.fromkeys(t.tool for t in known))
             words = (
-                f"From the taught plan {self.plan.name}, with another cutter: {names} does not fit here ({why}); "
-                f"{operation.tool.name} is the planner's own choice."
+                f"From the taught plan {self.plan.name}, with another cutter: {refused.words}; {operation.tool.name} is the planner's "
+                "own choice."
             )
             return process.with_operation(_with_rule(operation, words)), False
         rule = f"From the taught plan {self.plan.name}: stage, choices and cutter."
@@ -102,23 +102,31 @@ class _Work:
 
     def _taught(
         self, process: ProcessTree, operation: Operation, known: Sequence[TaughtOperation]
-    ) -> tuple[TaughtOperation | None, str]:
-        """Return what the plan does where the planner takes this cutter; else its thickest cutter that fits, or why none does."""
+    ) -> tuple[TaughtOperation | None, _Refused]:
+        """Return what the plan does where the planner takes this cutter; else its thickest cutter that fits, or None. With it comes the
+        refusal of the plan's cutter that is nearest to the planner's."""
         now = operation.tool.name
-        ranked = sorted(known, key=lambda t: (t.planned != now, t.tool != now))
-        reasons = []
-        fitting: list[tuple[float, TaughtOperation]] = []
-        for taught in ranked:
+        refused: list[_Refused] = []
+        fitting: list[TaughtOperation] = []
+        for taught in sorted(known, key=lambda t: (t.planned != now, t.tool != now)):
             reason = self._refusal(process, operation, taught)
-            if not reason:
-                if taught.planned == now or taught.tool == now:
-                    return taught, ""
-                fitting.append((self._diameter(taught.tool), taught))
+            if not reason and now in (taught.planned, taught.tool):
+                return taught, _Refused()
+            if reason:
+                refused.append(_Refused(tool=taught.tool, reason=reason))
             else:
-                reasons.append(reason)
-        if fitting:
-            return max(fitting, key=lambda f: (f[0], f[1].tool))[1], ""
-        return None, reasons[0]
+                fitting.append(taught)
+        nearest = min(refused, key=lambda r: self._distance(r.tool, operation), default=_Refused())
+        best = max(fitting, key=lambda t: (self._diameter(t.tool), t.tool), default=None)
+        return best, nearest
+
+    def _distance(self, name: str, operation: Operation) -> tuple[bool, float, str]:
+        """Return how far a cutter is from an operation's: another form or corner counts more than any diameter (mm)."""
+        tool, now = self._cutter(name), operation.tool
+        if tool is None or not isinstance(now, Tool):
+            return True, math.inf, name
+        same = _same_foot(tool, now, finishes=bool(operation.faces))
+        return not same, abs(tool.diameter - now.diameter), name
 
     def _diameter(self, name: str) -> float:
         tool = self._cutter(name)
@@ -172,6 +180,18 @@ class _Work:
         except BadInput as reason:
             return operation, f" Its speeds are not taken: {reason}."
         return replace(changed, taught_data=True), ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Refused:
+    """A cutter of a plan that does not fit an operation, and why."""
+
+    tool: str = ""
+    reason: str = ""
+
+    @property
+    def words(self) -> str:
+        return f"{self.tool} does not fit here ({self.reason})"
 
 
 def refusal(tool: Tool, planned: Tool, operation: Operation) -> str:

@@ -15,8 +15,8 @@ class LibrarySettings:
     use: str = setting(
         AUTOMATIC,
         label="Plan library",
-        help="auto: the route follows the most similar plan of the library, where one is similar enough and no typical plan is "
-        "named; off: none; else the name of the plan to follow, however similar.",
+        help="auto: the route follows the most similar plan of the library that another part has taught, where one is similar "
+        "enough and no typical plan is named; off: none; else the name of the plan to follow, however similar.",
     )
     similarity: float = setting(
         0.8,

@@ -42,6 +42,7 @@ def taught_plan(
     name: str,
     date: str,
     part: str,
+    part_digest: str,
     settings: Mapping[str, Value],
 ) -> TaughtResult:
     """Return the plan that a process teaches; `base` is the typical or taught plan that it was made from.
@@ -62,6 +63,7 @@ def taught_plan(
             name=name,
             date=date,
             part=part,
+            part_digest=part_digest,
             base=base.name,
             signature=signature,
             stages=taught_stages(process, kinds, base),

@@ -25,6 +25,7 @@ def plan_dict(plan: TaughtPlan) -> dict[str, Any]:
         "name": plan.name,
         "date": plan.date,
         "part": plan.part,
+        "part_digest": plan.part_digest,
         "base": plan.base,
         "signature": plan.signature.as_dict(),
         "stages": [asdict(stage) for stage in plan.stages],
@@ -59,6 +60,7 @@ def plan_of_text(text: str, where: str) -> TaughtPlan:
         name=reader.text("name"),
         date=reader.text("date"),
         part=reader.text("part"),
+        part_digest=reader.text("part_digest"),
         base=reader.text("base"),
         signature=PartSignature(
             family=signature.text("family"),

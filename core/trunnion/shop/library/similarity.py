@@ -3,13 +3,15 @@
     s = 0                                                        for parts of different families
     s = (5 h + 3 z + m + k) / 10                                 for parts of the same
 
-    h = sum of min(a_i, b_i) / sum of max(a_i, b_i)              features a_i and b_i of each kind in either part
+    h = (sum of min(a_i, b_i) / sum of max(a_i, b_i)             features a_i and b_i of each kind in either part
+         + mean of min(a_i, b_i) / max(a_i, b_i)) / 2
     z = mean of min(a_j, b_j) / max(a_j, b_j)                    sizes a_j and b_j of each name, 0 where only one part has it
     m = 1 for the same material, 3/4 for the same ISO 513 group, else 0
     k = 1 for the same kind of machine, else 0
 
-h is the Ruzicka similarity, the Jaccard index of weighted sets (Cha 2007, "Comprehensive survey on distance/similarity measures between
-probability density functions", equation 12): it falls with every feature that one part has more than the other. A size enters by
+The first half of h is the Ruzicka similarity, the Jaccard index of weighted sets (Cha 2007, "Comprehensive survey on distance/similarity
+measures between probability density functions", equation 12); the second takes each kind alone, so that a hundred holes do not hide that
+the bosses are others. Both fall with every feature that one part has more than the other. A size enters by
 exp(-|ln(a/b)|), the smaller over the larger, which counts alike in either direction, so s is symmetric; it is 1 for equal signatures and
 lies between 0 and 1.
 """
@@ -67,13 +69,13 @@ def similarity(one: PartSignature, other: PartSignature) -> Similarity:
 
 
 def common_share(one: Mapping[str, int], other: Mapping[str, int]) -> float:
-    """Return the Ruzicka similarity of two histograms; 1 where both are empty.
+    """Return how similar two histograms are, taken as a whole and kind by kind; 1 where both are empty.
 
-    >>> common_share({"pocket": 3, "hole": 4}, {"pocket": 2, "rib": 1})
+    >>> common_share({"pocket": 4, "hole": 4}, {"pocket": 2})
     0.25
     """
     most = _total(one, other, max)
-    return _total(one, other, min) / most if most else 1.0
+    return 0.5 * (_total(one, other, min) / most + _mean_ratio(one, other)) if most else 1.0
 
 
 def size_ratio(one: Mapping[str, float], other: Mapping[str, float]) -> float:
@@ -82,14 +84,18 @@ def size_ratio(one: Mapping[str, float], other: Mapping[str, float]) -> float:
     >>> size_ratio({"length": 100.0, "width": 50.0}, {"length": 50.0, "width": 50.0})
     0.75
     """
-    names = sorted({*one, *other})
+    return _mean_ratio(one, other) if one or other else 1.0
+
+
+def _mean_ratio(one: Mapping[str, float], other: Mapping[str, float]) -> float:
+    """Return the mean of the smaller over the larger of values above 0 by name, 0 for one that is in one of the mappings only."""
     ratios = [
         min(one[name], other[name]) / max(one[name], other[name])
         if name in one and name in other
         else 0.0
-        for name in names
+        for name in sorted({*one, *other})
     ]
-    return math.fsum(ratios) / len(ratios) if ratios else 1.0
+    return math.fsum(ratios) / len(ratios)
 
 
 def _total(

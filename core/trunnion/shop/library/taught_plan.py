@@ -32,13 +32,15 @@ class TaughtOperation:
 class TaughtPlan:
     """A plan as a finished part has taught it.
 
-    `date` is given by who adds it; `part` names the part, `base` the typical plan that it was made from. `stages` are in the order of work,
-    without those that were suppressed. `settings` are the part's settings of route and strategies that are not the defaults, by full key.
+    `date` is given by who adds it; `part` names the part, `part_digest` is that of its file (`PartInfo`), `base` names the typical plan
+    that it was made from. `stages` are in the order of work, without those that were suppressed. `settings` are the part's settings of
+    route and strategies that are not the defaults, by full key.
     """
 
     name: str
     date: str
     part: str
+    part_digest: str
     base: str
     signature: PartSignature
     stages: tuple[Stage, ...]
