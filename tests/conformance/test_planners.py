@@ -11,6 +11,7 @@ from trunnion import registry
 from trunnion.findings import Refused
 from trunnion.model.blank import Box
 from trunnion.model.process import ProcessTree
+from trunnion.pipeline.planning.library import add_to_library
 from trunnion.pipeline.planning.scene import SessionContext, SetupScene
 from trunnion.pipeline.steps import step_named
 from trunnion.plan.contract import DriveNeeds, planner_for
@@ -20,6 +21,7 @@ from trunnion.plan.typical import typical_plan
 from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.contract import feature_kinds
 from trunnion.settings import GROUPS, declared, digest
+from trunnion.shop.library import PlanLibrary
 from trunnion.store.mapping import Members, from_xml, to_xml
 from trunnion.store.process import process_xml
 
@@ -222,3 +224,23 @@ def test_its_process_is_read_back_from_a_project_and_fits_the_schema(name):
 def test_it_stops_soon_after_it_was_asked_to(name):
     route_again(name)
     check_cancel(lambda progress: route_again(name, progress))
+
+
+@by_name
+def test_a_plan_that_its_part_has_taught_gives_the_same_operations_again(name, tmp_path):
+    engine, session = own(name)[0], until(name, "route")
+    library = PlanLibrary(tmp_path / "plan-library.sqlite")
+    context = replace(engine.context_of(session), library=library)
+    result = add_to_library(session, context, name="taught", date="2026-03-01")
+    assert all(size > 0.0 for size in result.plan.signature.sizes.values())
+    assert result.plan.signature.sizes and result.plan.signature.features
+    again = replace(
+        until(name, "blank"),
+        choices={**session.choices, "route.library.use": "taught"},
+        process=None,
+    )
+    process = step_named("route").work(again, context, NO_PROGRESS).session.process
+    assert process.plan == "taught"
+    plain = [replace(o, rules=()) for o in session.process.operations]
+    assert digest([replace(o, rules=()) for o in process.operations]) == digest(plain)
+    assert all(o.rules[-1].startswith("From the taught plan") for o in process.operations)

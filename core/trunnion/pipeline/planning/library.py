@@ -90,9 +90,10 @@ def library_choice(session: Session, context: Context) -> LibraryChoice:
         return _named(library, settings.use, signature)
     if session.choices.get(PLAN):
         return NOTHING
+    own = session.part.digest if session.part is not None else ""
     try:
         all_found = library.matches(signature)
-        found = tuple(m for m in all_found if m.plan.part_digest != context.part.digest)
+        found = tuple(m for m in all_found if m.plan.part_digest != own)
         others = len(library.names()) - len(all_found) + len(found)
     except BadInput as reason:
         return LibraryChoice(
@@ -196,7 +197,9 @@ def routed(planner: Planner, job: RouteJob, choice: LibraryChoice) -> ProcessTre
             return process
         return replace(process, findings=(*choice.findings, *process.findings))
     choices = {**plan.settings, **job.choices, PLAN: plan.name}
-    shop = replace(job.shop, plans={**job.shop.plans, plan.name: plan.typical()})
+    # It is named, and the first one too, for planners that have no setting for it.
+    others = {name: typical for name, typical in job.shop.plans.items() if name != plan.name}
+    shop = replace(job.shop, plans={plan.name: plan.typical(), **others})
     made = planner.route(replace(job, shop=shop, choices=choices))
     result = followed(made, plan, job.recognition, job.shop, choices)
     process = _with_strategy_settings(result.process, plan, job.choices)
