@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hypothesis import assume, given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from trunnion.shop.library import PartSignature, similarity
@@ -28,6 +28,7 @@ SIGNATURES = st.builds(
 )
 
 
+@settings(deadline=None)
 @given(SIGNATURES, SIGNATURES)
 def test_it_is_symmetric_and_between_nothing_and_one(one, other):
     value = similarity(one, other).value
@@ -35,17 +36,20 @@ def test_it_is_symmetric_and_between_nothing_and_one(one, other):
     assert 0.0 <= value <= 1.0
 
 
+@settings(deadline=None)
 @given(SIGNATURES)
 def test_a_part_is_wholly_like_itself(one):
     assert similarity(one, one).value == 1.0
 
 
+@settings(deadline=None)
 @given(SIGNATURES, SIGNATURES)
 def test_parts_of_different_families_are_not_alike(one, other):
     assume(one.family != other.family)
     assert similarity(one, other).value == 0.0
 
 
+@settings(deadline=None)
 @given(SIGNATURES, st.data())
 def test_it_falls_with_every_feature_that_is_taken_away(one, data):
     assume(one.features)
@@ -58,6 +62,7 @@ def test_it_falls_with_every_feature_that_is_taken_away(one, data):
         before = value
 
 
+@settings(deadline=None)
 @given(SIGNATURES, st.floats(1.05, 3.0), st.floats(1.05, 3.0))
 def test_it_falls_as_a_size_goes_away_in_either_direction(one, first, second):
     assume(one.sizes)
