@@ -16,6 +16,7 @@ from trunnion.toolpath.motion.reorient import (
     led_away,
     moved_over,
     turn,
+    turned_round,
 )
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -109,7 +110,17 @@ def test_paths_one_after_the_other_are_led_only_where_the_direction_changes():
     assert led[2].position[0] == approx([0.0, 0.0, SWING.centre[2] + SWING.radius])
 
 
-def test_between_two_directions_from_below_it_goes_over_the_top_and_leans_no_lower_than_they_do():
-    path = moved_over(standing(lean(115.0, 180.0)), (60.0 * lean(115.0), lean(115.0)), SWING)
+def test_between_two_directions_from_below_it_goes_round_and_leans_no_lower_than_they_do():
+    path = moved_over(standing(lean(115.0, 180.0)), (60.0 * lean(100.0), lean(100.0)), SWING)
     assert path.axis[:, 2].min() >= lean(115.0)[2] - 1e-9
-    assert path.axis[:, 2].max() == approx(1.0)
+    assert path.axis[:, 2].max() <= lean(100.0)[2] + 1e-9
+
+
+def test_between_directions_that_lean_far_the_table_turns_and_the_head_does_not():
+    way = turned_round(lean(80.0, -170.0), lean(60.0, 10.0))
+    head = np.degrees(np.arccos(way[:, 2]))
+    assert (np.diff(head) <= 0.0).all() and head[[0, -1]] == approx([80.0, 60.0])
+    near = np.degrees(np.arccos(np.clip((way[1:] * way[:-1]).sum(axis=1), -1.0, 1.0)))
+    assert near.max() <= np.degrees(STEP) + 1e-6
+    # Where one hardly leans the shortest way is kept.
+    assert turned_round(lean(10.0), lean(70.0, 90.0)) == approx(turn(lean(10.0), lean(70.0, 90.0)))

@@ -21,6 +21,8 @@ from trunnion.model.setup import Setup
 
 STEP = math.radians(5.0)
 """Largest turn in one block: the straight paths of the tip between stay outside the sphere because it is taken a thousandth larger."""
+FAR = math.radians(30.0)
+"""Lean from upright beyond which a tool goes round the part's axis rather than over the top."""
 LEAST_SAFE = 1.0
 """mm: how far outside of everything the sphere lies at least, whatever the clearance."""
 Pose = tuple[Floats, Floats]
@@ -74,11 +76,7 @@ def moved_over(path: Toolpath, before: Pose | None, sphere: ClearanceSphere) -> 
     start, direction = np.asarray(before[0]), np.asarray(before[1])
     if float(np.linalg.norm(axis - direction)) <= tolerance.PARAMETRIC:
         return path
-    turned = turn(direction, axis)
-    if turned[:, 2].min() < min(direction[2], axis[2]) - tolerance.PARAMETRIC:
-        # Lower than either end a machine may not lean: over the top instead.
-        upright_axis = np.array([0.0, 0.0, 1.0])
-        turned = np.vstack([turn(direction, upright_axis), turn(upright_axis, axis)[1:]])
+    turned = turned_round(direction, axis)
     around = [(sphere.centre + sphere.radius * a, a) for a in turned]
     return _led(
         [(sphere.above(start, direction), direction), *around, (sphere.above(tip, axis), axis)],
@@ -95,12 +93,17 @@ def led_away(path: Toolpath, sphere: ClearanceSphere) -> Toolpath:
     if not len(path) or path.axis[-1, 2] >= -tolerance.PARAMETRIC:
         return path
     tip, axis = path.position[-1], path.axis[-1]
-    level = np.array([axis[0], axis[1], 0.0])
-    size = float(np.linalg.norm(level))
-    level = level / size if size > tolerance.PARAMETRIC else np.array([1.0, 0.0, 0.0])
     poses = [(sphere.above(tip, axis), axis)]
-    poses += [(sphere.centre + sphere.radius * a, a) for a in turn(axis, level)]
+    poses += [(sphere.centre + sphere.radius * a, a) for a in turn(axis, _level(axis))]
     return Toolpath.join([path, _rapids(poses, path)])
+
+
+def _level(axis: Floats) -> Floats:
+    """Return the level direction (3,) that is nearest to an axis (3,); x for one that is upright."""
+    size = float(np.hypot(axis[0], axis[1]))
+    return np.array(
+        [axis[0] / size, axis[1] / size, 0.0] if size > tolerance.PARAMETRIC else [1.0, 0.0, 0.0]
+    )
 
 
 def joined(
@@ -117,6 +120,27 @@ def joined(
         if len(path):
             before = (path.position[-1], path.axis[-1])
     return tuple(led)
+
+
+def turned_round(first: Floats, last: Floats) -> Floats:
+    """Return unit directions (k, 3) from `first` to `last`, no two further apart than `STEP`, both ends included.
+
+    Between two that lean far, lean and angle about z change evenly: no direction leans lower than the lower end, and a head with a table
+    turning about z stays on its side, which it would leave on the shortest way over the top.
+    """
+    lean = np.arccos(np.clip([first[2], last[2]], -1.0, 1.0))
+    if lean.min() < FAR or lean.max() > math.pi - FAR:
+        return turn(first, last)
+    begin, end = (math.atan2(v[1], v[0]) for v in (first, last))
+    round_z = math.remainder(end - begin, 2.0 * math.pi)
+    count = max(1, math.ceil(math.hypot(lean[1] - lean[0], round_z) / STEP))
+    share = np.linspace(0.0, 1.0, count + 1)
+    down, angle = lean[0] + share * (lean[1] - lean[0]), begin + share * round_z
+    axes = np.column_stack(
+        [np.sin(down) * np.cos(angle), np.sin(down) * np.sin(angle), np.cos(down)]
+    )
+    axes[0], axes[-1] = first, last
+    return axes
 
 
 def turn(first: Floats, last: Floats) -> Floats:
