@@ -27,9 +27,9 @@ def followed(
 ) -> Floats:
     """Return the rotary angles (n, a) in rad at which a machine holds tool axes (n, 3), one after the other.
 
-    They go on from where the axes start_angle (a,) when that can be, else from the beginning that turns least. A head leans to its positive
-    side alone where that is possible: with some poses to either side a linear axis would travel twice as far. An axis within `near` rad of
-    the pole may be taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
+    They go on from where the axes start_angle (a,) when that can be, else from the beginning that turns least, a head leaned to its
+    positive side: with some paths to either side a linear axis would travel twice as far. An axis within `near` rad of the pole may be
+    taken for the pole. Raises `Refused`, naming operation and block, for what the machine can't hold or can't reach.
     """
     machine = work_position.machine
     through = _through_pole(axis, machine, near)
@@ -42,34 +42,10 @@ def followed(
             "choose another machine"
         )
     low, high = work_position.limits
-    leaned = np.array([rotary.carries == "tool" for rotary in machine.rotary])
-    if leaned.any() and not leaned.all():
-        found, _ = _least_turning(
-            angles, free, through, (np.where(leaned, np.maximum(low, 0.0), low), high), start_angle
-        )
-        if found is not None:
-            return found
-    found, reached = _least_turning(angles, free, through, (low, high), start_angle)
-    if found is None:
-        raise Refused(
-            f"operation {operation}, block {1 + reached}: {beyond(angles[reached], work_position)}"
-        )
-    return found
-
-
-def _least_turning(
-    angles: Floats,
-    free: Bools,
-    through: Bools,
-    limits: tuple[Floats, Floats],
-    start_angle: Floats | None,
-) -> tuple[Floats | None, int]:
-    """Return the angles (n, a) of the way between limits that goes on from a start or, where none does, turns least; and how many poses
-    could be followed where there is none."""
-    low, high = limits
-    angles_used = np.zeros((len(angles), angles.shape[2]))
-    home = np.clip(np.zeros(angles.shape[2]) if start_angle is None else start_angle, low, high)
-    tries: list[tuple[int, float, int, Floats]] = []
+    angles_used = np.zeros((len(axis), len(machine.rotary)))
+    home = np.zeros(len(machine.rotary)) if start_angle is None else start_angle
+    heads = [k for k, rotary in enumerate(machine.rotary) if rotary.carries == "tool"]
+    tries: list[tuple[int, bool, float, int, Floats]] = []
     # Spirals wind an axis up turn by turn: when it comes to its end it begins anew near the middle.
     unwound = (
         []
@@ -82,21 +58,26 @@ def _least_turning(
     ]:
         reached, turned = choose_angles(angles, free, through, low, high, SLACK, start, angles_used)
         if (
-            reached == len(angles)
+            reached == len(axis)
             and start is start_angle
             and np.abs(angles_used[:1] - start_angle).max(initial=0.0) <= 2.0 * POLE
         ):
-            return angles_used, reached
+            return angles_used
         tries.append(
             (
                 -reached,
+                bool((start[heads] < -POLE).any()),
                 turned + float(np.abs(start - home).sum()),
                 len(tries),
                 np.array(angles_used),
             )
         )
-    reached, _, _, best = min(tries, key=lambda t: t[:3])
-    return (best, len(angles)) if -reached == len(angles) else (None, -reached)
+    reached, *_, best = min(tries, key=lambda t: t[:4])
+    if -reached < len(axis):
+        raise Refused(
+            f"operation {operation}, block {1 - reached}: {beyond(angles[-reached], work_position)}"
+        )
+    return best
 
 
 def _through_pole(axis: Floats, machine: Machine, near: float) -> Bools:

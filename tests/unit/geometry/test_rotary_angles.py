@@ -66,18 +66,3 @@ def test_a_head_leans_to_one_side_wherever_the_tool_comes_from(around: float) ->
     axis = np.array([[np.cos(turn), np.sin(turn), -0.2]])
     angles = followed(axis / np.linalg.norm(axis), universal, None, 1e-3, "one")
     assert 0.0 < angles[0, 0] < np.radians(105.0)
-
-
-def test_a_head_leans_to_the_same_side_on_a_way_over_the_top() -> None:
-    """From one side of the part over the top to the other: the table turns half round at the top."""
-    universal = WorkPosition(
-        machine=load_shop().machines["Universal 1250"],
-        foot=np.zeros(3),
-        centre=np.zeros(3),
-        radius=200.0,
-    )
-    lean = np.radians(np.arange(-100.0, 101.0, 5.0))
-    axis = np.column_stack([np.sin(lean), np.zeros(len(lean)), np.cos(lean)])
-    angles = followed(axis, universal, None, 1e-3, "one")
-    assert angles[:, 0] == approx(np.abs(lean), abs=1e-9)
-    assert np.ptp(angles[:, 1]) == approx(np.pi, abs=1e-6)
