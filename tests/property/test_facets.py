@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
@@ -282,3 +283,28 @@ def test_an_upright_tool_is_as_deep_in_triangles_as_in_closed_forms(start, way, 
     )
     bound = 2 * tolerance.CONTACT_BOUND + triangles.facets.bound
     assert np.abs(np.minimum(exact, DEEP) - np.minimum(found, DEEP)).max() <= bound
+
+
+@pytest.mark.parametrize("turn", [0.5, 2.0, 3.3, -4.5257, 5.5, 6.2])
+def test_no_point_of_an_arc_leaves_its_chord_by_more_than_its_bulge(turn):
+    """Beyond half a turn too: a bound that stopped growing there ruled out triangles that a helix entered by 1.25 mm."""
+    axis, centre, start = np.array([0.0, 0.0, 1.0]), np.zeros(3), np.array([3.3, 0.0, 4.0])
+    end = np.array([3.3 * math.cos(turn), 3.3 * math.sin(turn), 2.0])
+    move = (start, end, axis, axis, centre, turn)
+    moves, row = moves_for(FORMS["barrel"], move), np.zeros(tool_motion.MOTION_COLUMNS)
+    ways_there = (
+        moves.start,
+        moves.end,
+        moves.start_axis,
+        moves.end_axis,
+        moves.centre,
+        moves.sweep,
+    )
+    tool_motion.fill_tool_motion(*(a[1] for a in ways_there), row)
+    ends, span = np.zeros((2, tool_motion.END_COLUMNS)), np.zeros(tool_motion.SPAN_COLUMNS)
+    tool_motion.fill_swept_segment(row, 0.0, 1.0, ends, span)
+    tips = poses(move, np.linspace(0.0, 1.0, 721))[0]
+    chord = end - start
+    share = np.clip((tips - start) @ chord / (chord @ chord), 0.0, 1.0)
+    off = np.linalg.norm(tips - start - share[:, None] * chord, axis=1)
+    assert off.max() <= span[tool_motion.S_BULGE] + 1e-9

@@ -186,9 +186,9 @@ def fill_swept_segment(motion: Floats, t0: float, t1: float, ends: Floats, span:
     )
     span[S_FROM], span[S_TO] = t0, t1
     if motion[SWEEP] != 0.0:
-        # Sagitta r (1 - cos(turn / 2)) of the larger radius; the second term is the mixed
+        # Sagitta r (1 - cos(turn / 2)) of the larger radius, up to 2 r for a full turn; the second term is the mixed
         # derivative of a radius that drifts while it turns, 2 drift turn / 8.
-        turn = min(share * abs(motion[SWEEP]), math.pi)
+        turn = min(share * abs(motion[SWEEP]), 2.0 * math.pi)
         drift = share * abs(motion[R_END] - motion[R_START])
         span[S_BULGE] = (
             max(motion[R_START], motion[R_END]) * (1.0 - math.cos(0.5 * turn)) + 0.25 * drift * turn
