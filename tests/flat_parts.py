@@ -16,6 +16,9 @@ from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.tool import Tool
 from trunnion.settings import Value
 
+MILL = {"machine": "Mill 1200"}
+"""Settings of setups: the machine that the tests of planning stand on."""
+
 
 def rounded(x0: float, y0: float, x1: float, y1: float, radius: float) -> Region:
     """Return a rectangle with rounded corners."""

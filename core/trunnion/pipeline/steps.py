@@ -20,6 +20,7 @@ from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
 from trunnion.pipeline.planning.library import library_choice, library_key, routed
+from trunnion.pipeline.planning.machine import with_machine
 from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
 from trunnion.pipeline.planning.open_faces import OpenSettings, frame_and_finding
 from trunnion.pipeline.planning.scene import SessionContext
@@ -178,13 +179,8 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
     if session.blank is None:
         raise BadCall("no blank yet: create the blank first")
     planner = planner_for(recognition.family)
-    setup = checked(choose(SetupSettings, session.choices))
-    for machine in filter(None, (setup.machine, setup.next_machine)):
-        if machine not in context.shop.machines:
-            raise BadInput(
-                f"there is no machine {machine} in the catalogue; known: {', '.join(sorted(context.shop.machines))}"
-            )
-    setups = make_setups(recognition, session.blank, setup)
+    choices = with_machine(planner, session.blank, session.choices, context.shop)
+    setups = make_setups(recognition, session.blank, checked(choose(SetupSettings, choices)))
     planner.can_plan(context.part)
     job = RouteJob(
         recognition=recognition,
@@ -193,7 +189,7 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
         setups=setups,
         shop=context.shop,
         context=SessionContext(context, session),
-        choices=session.choices,
+        choices=choices,
         progress=progress,
     )
     process = routed(planner, job, library_choice(session, context))

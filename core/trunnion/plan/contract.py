@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
 
 from trunnion import registry
 from trunnion.findings import BadInput, Finding, Refused
@@ -190,6 +190,14 @@ class Planner(Protocol):
         self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
     ) -> OperationDrive:
         """Return the drive of an operation; raise `Refused` where the part does not bear the feature out."""
+
+
+@runtime_checkable
+class Leaning(Protocol):
+    """A planner whose parts can't be made by an upright tool alone."""
+
+    lean: float
+    """rad: how far the tool leans from the setup's z axis, all round the part."""
 
 
 DriveMaker = Callable[[Operation, DriveNeeds, Scene, Progress], OperationDrive]

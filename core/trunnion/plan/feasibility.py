@@ -4,6 +4,7 @@ tools than a magazine has places for; and the setups that a route can be made in
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from trunnion.findings import BadInput, Finding, error, warning
 from trunnion.model.blank import Blank
@@ -91,5 +92,5 @@ def both_sides(
     """Return the setups that features may be cut in: where there is one, the part turned over comes after it if its machine takes that."""
     if len(setups) != 1:
         return setups
-    other = turned_over(blank, settings)
+    other = turned_over(blank, replace(settings, machine=setups[0].machine))
     return setups if too_large(blank, (other,), shop) else (*setups, other)

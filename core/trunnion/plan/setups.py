@@ -37,10 +37,11 @@ class SetupSettings:
         help="Height above the blank at which the tool travels between operations.",
     )
     machine: str = setting(
-        "Mill 1200",
+        "",
         label="Machine",
         catalogue="machines",
-        help="Name of a machine of the catalogue.",
+        help="Name of a machine of the catalogue; empty: the one with the fewest axes and the least travel that the part's family and "
+        "its blank need.",
     )
     next_machine: str = setting(
         "",

@@ -283,3 +283,19 @@ def test_a_smooth_run_of_an_outline_is_one_side_and_its_ends_are_others():
     on_dome = np.column_stack([dome[:-1, 0], np.zeros(29), dome[:-1, 1]])
     sides = blank.sides(on_dome, 0.02)
     assert sides.shape[1] == 2 and sides.all(axis=0).sum() == 1
+
+
+@pytest.mark.parametrize("solid", ALL, ids=lambda b: f"{b.kind} {getattr(b, 'axis', '')}")
+@pytest.mark.parametrize("frame", [WORLD, ASKEW])
+def test_no_point_of_a_blank_is_farther_away_than_it_reaches(solid, frame):
+    for point in np.random.default_rng(5).uniform(-20.0, 20.0, (20, 3)):
+        away = np.linalg.norm(
+            solid.frame.to_local(frame.to_world(point)) - solid.shell()[0], axis=1
+        )
+        # The facets of a shell stand out of its circles by less than a hundredth.
+        assert solid.reach(point, frame) == approx(away.max(), rel=0.01)
+
+
+def test_a_round_blank_reaches_less_far_than_the_corners_of_its_box():
+    middle = np.array([0.0, 0.0, 0.5 * (BOTTOM + TOP)])
+    assert bar().reach(middle, WORLD) == approx(math.hypot(RADIUS, 0.5 * (TOP - BOTTOM)))

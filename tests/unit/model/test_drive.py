@@ -9,6 +9,7 @@ import pytest
 from pytest import approx
 
 from flat_parts import (
+    MILL,
     FlatPart,
     Prism,
     blank_of,
@@ -37,7 +38,7 @@ CORNERS = (4 - math.pi) * 64
 
 def drive(made, kind, feature, earlier=(), choices=None):
     part, recognition = made
-    (setup,) = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
+    (setup,) = make_setups(recognition, blank_of(part), choose(SetupSettings, MILL))
     one = operation(kind, feature, D10, choices)
     process = ProcessTree(plan="", material="", setups=(setup,), operations=(*earlier, one))
     return drive_of(one, process, SetupSpace.of(part, recognition, blank_of(part), setup))
@@ -169,7 +170,7 @@ def test_the_same_drive_comes_out_in_a_setup_from_below():
         attributes={"direction": (0.0, 0.0, -1.0)},
     )
     recognition = Recognition(family="panel", frame=WORLD, features=(pocket,))
-    _, below = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
+    _, below = make_setups(recognition, blank_of(part), choose(SetupSettings, MILL))
     process = ProcessTree(plan="", material="", setups=(below,))
     space = SetupSpace.of(part, recognition, blank_of(part), below)
     (level,) = drive_of(operation("rough", "pocket-01", D10), process, space).levels

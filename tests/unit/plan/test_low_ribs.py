@@ -7,10 +7,12 @@ import math
 import cadquery as cq
 import pytest
 
+from flat_parts import MILL
 from trunnion import tolerance
 from trunnion.pipeline import Engine
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups import SetupSettings, make_setups
+from trunnion.settings import choose
 
 LENGTH, WIDTH, HEIGHT, FLOOR = 120.0, 70.0, 24.0, 6.0
 SIDE, CORNER, FILLET = 6.0, 9.0, 6.0
@@ -35,7 +37,7 @@ def test_a_pocket_beside_a_low_rib_reaches_to_its_walls(share, tmp_path):
     engine = Engine()
     session = engine.run(engine.open(_panel(share * FILLET, tmp_path / "rib.step")), "blank")
     part = engine.context_of(session).part
-    (setup,) = make_setups(session.recognition, session.blank, SetupSettings())
+    (setup,) = make_setups(session.recognition, session.blank, choose(SetupSettings, MILL))
     space = SetupSpace.of(part, session.recognition, session.blank, setup)
     area = POCKET[0] * POCKET[1] - (4.0 - math.pi) * CORNER**2
     pockets = session.recognition.of_kind("pocket")
@@ -60,7 +62,7 @@ def test_a_floor_above_a_low_rib_ends_at_the_rib(share, tmp_path):
     engine = Engine()
     session = engine.run(engine.open(stepped), "blank")
     part = engine.context_of(session).part
-    (setup,) = make_setups(session.recognition, session.blank, SetupSettings())
+    (setup,) = make_setups(session.recognition, session.blank, choose(SetupSettings, MILL))
     space = SetupSpace.of(part, session.recognition, session.blank, setup)
     pocket = next(
         f for f in session.recognition.of_kind("pocket") if len(f.with_role("floor")) == 2

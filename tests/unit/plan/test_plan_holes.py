@@ -10,7 +10,7 @@ import pytest
 from lxml import etree
 from pytest import approx
 
-from flat_parts import FlatPart, Prism, blank_of
+from flat_parts import MILL, FlatPart, Prism, blank_of
 from holed import HIGH, feature, hole
 from programs import part_info
 from trunnion.findings import Refused
@@ -132,7 +132,7 @@ def walled(*holes, wall: float = 0.0, at: float = 40.0):
 def around(made, clearance=1.0):
     part, recognition = made
     blank = blank_of(part)
-    setup = make_setups(recognition, blank, choose(SetupSettings, {}))[0]
+    setup = make_setups(recognition, blank, choose(SetupSettings, MILL))[0]
     space = SetupSpace.of(part, recognition, blank, setup)
     first = hole_in(recognition.features[0], WORLD, setup.frame).bore
     return HoleSpace(space=space, clearance=clearance), first
@@ -196,7 +196,7 @@ def test_a_covered_mouth_is_seen():
 def route(made, **choices):
     part, recognition = made
     blank = blank_of(part)
-    setups = make_setups(recognition, blank, choose(SetupSettings, {}))
+    setups = make_setups(recognition, blank, choose(SetupSettings, MILL))
     return make_route(
         recognition,
         (),
@@ -385,7 +385,7 @@ def test_what_opens_away_at_the_far_end_is_told_where_no_other_side_is_planned()
     sizes = hole(30, 30, 9, back_counterbore_diameter=15.0, back_counterbore_depth=4.0)
     part, recognition = walled(sizes)
     blank = blank_of(part)
-    (setup,) = make_setups(recognition, blank, choose(SetupSettings, {}))
+    (setup,) = make_setups(recognition, blank, choose(SetupSettings, MILL))
     state = PanelPlanState(
         space=SetupSpace.of(part, recognition, blank, setup),
         recognition=recognition,

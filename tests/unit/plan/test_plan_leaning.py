@@ -12,6 +12,7 @@ import pytest
 
 import leaning_pockets
 import samples
+from flat_parts import MILL
 from trunnion import tolerance
 from trunnion.geometry.plane.region import union_all
 from trunnion.model.session import Session
@@ -22,6 +23,7 @@ from trunnion.plan.panel.freeform.pocket import FreeformPocket
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.progress import NO_PROGRESS
+from trunnion.settings import choose
 
 SHAPES = {
     "away": leaning_pockets.leaning_block,
@@ -176,7 +178,7 @@ def test_each_pocket_has_its_own_share_of_a_rib_that_goes_past_several() -> None
     session = engine.run(engine.open(samples.written(leaning_pockets.ribbed_block())), "blank")
     found, part = session.recognition, engine.context.part
     assert found is not None and session.blank is not None
-    setup = make_setups(found, session.blank, SetupSettings())[0]
+    setup = make_setups(found, session.blank, choose(SetupSettings, MILL))[0]
     space = SetupSpace.of(part, found, session.blank, setup)
     curved = SurfaceSpace.of(part, engine.context.skin(tolerance.CHORD), session.blank, setup)
     beside = adjacent(found, part)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flat_parts import blank_of, narrow_panel, open_panel, panel, stepped_panel
+from flat_parts import MILL, blank_of, narrow_panel, open_panel, panel, stepped_panel
 from trunnion.findings import Severity
 from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature
@@ -24,7 +24,7 @@ SHOP = load_shop()
 def route(made, *, blank=None, **words):
     part, recognition = made
     blank = blank or blank_of(part)
-    setups = make_setups(recognition, blank, choose(SetupSettings, {}))
+    setups = make_setups(recognition, blank, choose(SetupSettings, MILL))
     return make_route(
         recognition, (), blank, setups, SHOP, part, choose(RouteSettings, words), NO_PROGRESS
     )

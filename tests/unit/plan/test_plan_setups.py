@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from pytest import approx
 
-from flat_parts import blank_of, panel
+from flat_parts import MILL, blank_of, panel
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.feature import Feature
 from trunnion.plan.blank import BlankSettings, make_blank
@@ -33,7 +33,7 @@ def test_the_blank_is_larger_than_the_part_by_its_allowances():
 
 def test_zero_lies_on_the_blanks_top_corner_and_the_clearance_above_it():
     part, recognition = panel()
-    (setup,) = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
+    (setup,) = make_setups(recognition, blank_of(part), choose(SetupSettings, MILL))
     assert setup.frame.origin == approx([-5, -5, 32])
     assert setup.clearance == 20.0 and setup.work_offset == "G54"
 
@@ -41,7 +41,7 @@ def test_zero_lies_on_the_blanks_top_corner_and_the_clearance_above_it():
 def test_zero_may_lie_in_the_middle_of_the_bottom():
     part, recognition = panel()
     (setup,) = make_setups(
-        recognition, blank_of(part), choose(SetupSettings, {"origin": "centre bottom"})
+        recognition, blank_of(part), choose(SetupSettings, {**MILL, "origin": "centre bottom"})
     )
     assert setup.frame.origin == approx([100, 50, 0])
     assert setup.clearance == 52.0
@@ -50,7 +50,7 @@ def test_zero_may_lie_in_the_middle_of_the_bottom():
 def test_a_feature_reached_from_below_gets_a_setup_turned_about_x():
     part, recognition = panel()
     recognition = replace(recognition, features=(*recognition.features, BELOW))
-    _, below = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
+    _, below = make_setups(recognition, blank_of(part), choose(SetupSettings, MILL))
     assert below.frame.z.tolist() == [0, 0, -1] and below.work_offset == "G55"
     low, high = blank_of(part).box_in(below.frame)
     assert low == approx([0, 0, -32]) and high == approx([210, 110, 0])
@@ -60,7 +60,7 @@ def test_a_hole_that_leans_downward_is_not_reached_from_below():
     part, recognition = panel()
     leaning = replace(BELOW, id="hole-09", kind="hole", attributes={"direction": (0.6, 0.0, -0.8)})
     recognition = replace(recognition, features=(*recognition.features, leaning))
-    assert len(make_setups(recognition, blank_of(part), choose(SetupSettings, {}))) == 1
+    assert len(make_setups(recognition, blank_of(part), choose(SetupSettings, MILL))) == 1
 
 
 def test_setups_after_the_first_may_stand_on_another_machine():
@@ -74,7 +74,7 @@ def test_setups_after_the_first_may_stand_on_another_machine():
 def test_setups_stand_on_one_machine_where_no_other_is_named():
     part, recognition = panel()
     recognition = replace(recognition, features=(*recognition.features, BELOW))
-    made = make_setups(recognition, blank_of(part), choose(SetupSettings, {}))
+    made = make_setups(recognition, blank_of(part), choose(SetupSettings, MILL))
     assert [s.machine for s in made] == ["Mill 1200", "Mill 1200"]
 
 

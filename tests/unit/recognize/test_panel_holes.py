@@ -10,6 +10,7 @@ import pytest
 
 import samples
 from drilled_parts import box, counterbored, cylinder, flat_hole, through
+from flat_parts import MILL
 from trunnion import tolerance
 from trunnion.model.feature import Feature, Recognition
 from trunnion.pipeline import Engine
@@ -194,7 +195,7 @@ def test_the_section_of_a_pocket_does_not_run_out_through_a_hole_in_its_wall(x: 
             plate = plate.cut(cutter)
         opened = engine.open(samples.written(plate.val().wrapped))
         session = engine.run(opened, "blank")
-        (setup,) = make_setups(session.recognition, session.blank, SetupSettings())
+        (setup,) = make_setups(session.recognition, session.blank, choose(SetupSettings, MILL))
         space = SetupSpace.of(
             engine.context_of(session).part, session.recognition, session.blank, setup
         )

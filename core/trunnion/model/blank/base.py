@@ -88,6 +88,10 @@ class BlankBase(ABC):
         corners = self.corners(frame)
         return corners.min(axis=0), corners.max(axis=0)
 
+    def reach(self, point: Floats, frame: Frame) -> float:
+        """Return the distance in mm from a point (3,) of a frame that no point of it exceeds: that of its box's farthest corner."""
+        return float(np.linalg.norm(self.corners(frame) - point, axis=1).max())
+
     @abstractmethod
     def intervals(self, start: Floats, direction: Floats) -> Intervals:
         """Return where rays from `start` (n, 3) along a unit `direction` (3,), both in its own frame, are inside."""

@@ -59,6 +59,11 @@ class Faceted(BlankBase):
         """Return length, width and height of its box."""
         return tuple(("", float(v)) for v in self.size)
 
+    def reach(self, point: Floats, frame: Frame) -> float:
+        """See `BlankBase`; exact."""
+        at = self.frame.to_local(frame.to_world(point))
+        return float(np.linalg.norm(self.points - at, axis=1).max())
+
     def intervals(self, start: Floats, direction: Floats) -> Intervals:
         """See `BlankBase`."""
         return mesh_intervals(self.points, self.triangles, start, direction)

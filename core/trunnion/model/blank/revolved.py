@@ -106,6 +106,12 @@ class Revolved(BlankBase):
         along = self.outline[:, 1:] * axis
         return origin + (along - reach).min(axis=0), origin + (along + reach).max(axis=0)
 
+    def reach(self, point: Floats, frame: Frame) -> float:
+        """See `BlankBase`; exact: the farthest point of a circle lies across the axis from the point."""
+        at = self._turned(self.frame.to_local(frame.to_world(point)))
+        across = self.outline[:, 0] + np.hypot(at[0], at[1])
+        return float(np.hypot(across, self.outline[:, 1] - at[2]).max())
+
     def _direction(self) -> Floats:
         """Return the axis (3,) in the part's coordinates."""
         return self.frame.axes[AXES.index(self.axis)]

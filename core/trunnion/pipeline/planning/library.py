@@ -14,12 +14,12 @@ from trunnion.findings import BadCall, BadInput, Finding, info, warning
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
+from trunnion.pipeline.planning.machine import MACHINE, with_machine
 from trunnion.plan.contract import Planner, RouteJob, planner_for
 from trunnion.plan.library.follow import followed
 from trunnion.plan.library.principal_sizes import principal_sizes
 from trunnion.plan.library.settings import AUTOMATIC, OFF, LibrarySettings
 from trunnion.plan.library.teach import TaughtResult, taught_plan
-from trunnion.plan.setups import SetupSettings
 from trunnion.registry import PLANNERS, STRATEGIES
 from trunnion.settings import Value, checked, choose, declared
 from trunnion.shop import TypicalPlan
@@ -52,15 +52,17 @@ def signature_of(session: Session, context: Context) -> PartSignature | None:
     found, blank = session.recognition, session.blank
     if found is None or blank is None or found.family not in registry.names(PLANNERS):
         return None
-    machine = checked(choose(SetupSettings, session.choices)).machine
-    if machine not in context.shop.machines or blank.material not in context.shop.materials:
+    planner, named = planner_for(found.family), session.choices.get(MACHINE) or ""
+    unknown = named and named not in context.shop.machines
+    if unknown or blank.material not in context.shop.materials:
         return None
+    choices = with_machine(planner, blank, session.choices, context.shop)
     return part_signature(
         found.family,
         found.features,
-        principal_sizes(planner_for(found.family), session.sizes),
+        principal_sizes(planner, session.sizes),
         context.shop.material(blank.material),
-        context.shop.machine(machine),
+        context.shop.machine(str(choices[MACHINE])),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -35,7 +36,9 @@ if TYPE_CHECKING:
     from trunnion.part.part import Part
 
 NEEDS_AXES = "bosses are milled along their own normals"
-LEANING = " that leans the tool by 90 degrees"
+LEAN = 90.0
+"""Degrees: how far tools lean from the axis of the ring, along the normals of its bosses."""
+LEANING = f" that leans the tool by {LEAN:.0f} degrees"
 """Why a machine without rotary axes is refused, and what they must do."""
 
 DIAMETERS, WALL = ("smallest_diameter", "largest_diameter"), "wall_thickness"
@@ -48,6 +51,7 @@ class CasingPlanner:
     name, noun = "casing", "casings"
     settings: tuple[type, ...] = (RouteSettings, CasingRouteSettings, TurningSettings)
     cutter_rules: tuple[str, ...] = CUTTER_RULES
+    lean = math.radians(LEAN)
 
     def principal_sizes(self, sizes: Sequence[SizeEntry]) -> Mapping[str, float]:
         """Return the largest and the smallest diameter, the length along the axis and the thinnest wall (mm) of a casing."""

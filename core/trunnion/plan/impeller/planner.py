@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from trunnion import tolerance
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 NEEDS_AXES = "channels between blades are milled by a tool that leans"
 """Why a machine without rotary axes is refused."""
+LEAN = 60.0
+"""Degrees: how far tools lean from the axis of usual wheels, where channels turn outwards."""
 
 
 class ImpellerPlanner:
@@ -37,6 +40,7 @@ class ImpellerPlanner:
     name, noun = "impeller", "impellers"
     settings: tuple[type, ...] = (RouteSettings, ImpellerRouteSettings)
     cutter_rules: tuple[str, ...] = CUTTER_RULES
+    lean = math.radians(LEAN)
 
     def can_plan(self, part: Part) -> None:
         """Raise `BadInput` for faces that enclose no material."""

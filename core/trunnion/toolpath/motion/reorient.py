@@ -44,20 +44,15 @@ class ClearanceSphere:
 
 def clearance_sphere(blank: Blank, setup: Setup) -> ClearanceSphere:
     """Return the sphere round the blank and the fixtures of a setup, as far from them as the clearance height is from the blank."""
-    corners = blank.corners(setup.frame)
-    points = np.vstack(
-        [
-            corners,
-            *(
-                setup.frame.to_local(f.mesh.points)
-                for f in setup.fixtures
-                if f.setup in ("", setup.name)
-            ),
-        ]
-    )
-    safe = max(setup.clearance - float(points[:, 2].max()), LEAST_SAFE)
-    centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    radius = float(np.linalg.norm(points - centre, axis=1).max()) + safe
+    low, high = blank.box_in(setup.frame)
+    centre = 0.5 * (low + high)
+    held = [
+        setup.frame.to_local(f.mesh.points) for f in setup.fixtures if f.setup in ("", setup.name)
+    ]
+    top = max((high[2], *(float(points[:, 2].max()) for points in held)))
+    safe = max(setup.clearance - top, LEAST_SAFE)
+    reaches = [float(np.linalg.norm(points - centre, axis=1).max()) for points in held]
+    radius = max((blank.reach(centre, setup.frame), *reaches)) + safe
     return ClearanceSphere(centre=centre, radius=radius / math.cos(0.5 * STEP))
 
 
