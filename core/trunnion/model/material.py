@@ -162,6 +162,15 @@ class Machine:
         raise KeyError(name)
 
 
+def leaning_axis(machine: Machine) -> int:
+    """Return which of a machine's rotary axes leans the tool: the head's where the table turns too, else the first.
+
+    Of the two ways to hold a direction the sign of its angle says which is meant (CYCLE800's DIR, PLANE SPATIAL's SEQ).
+    """
+    carried = [a.carries for a in machine.rotary]
+    return carried.index("tool") if len(set(carried)) > 1 else 0
+
+
 def _power_at(rows: Sequence[tuple[float, float]], spindle: float) -> float:
     """Return the power in kW at a spindle speed in 1/min, straight between the rows of a curve and from nothing to its first one."""
     if spindle <= rows[0][0]:

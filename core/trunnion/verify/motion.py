@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
-from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.program import NOTHING_SAID, ProgramSection, Stance
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.tool import Tool
 from trunnion.verify.cutter import Bodies, bodies_of, bodies_of_one
@@ -64,7 +64,8 @@ class Moves:
     an arc about the axis) and the axis turns at an even rate in the plane of both. centre (n, 3) of arcs, NaN otherwise; sweep (n,) the
     signed angle an arc turns, rad. upright (n,): the axis is +z all along; row (n, 15): those as the strip kernel reads them.
     section (n,), block (n,) where each comes from; rapid (n,); feed (n,) mm/min; length (n,) mm of the tip's path.
-    tools: the tools in use, tool (n,) their rows, bodies theirs.
+    tools: the tools in use, tool (n,) their rows, bodies theirs. stances: what is said of the rotary axes at the
+    end of a move, by its row; of some of the moves nothing is.
     """
 
     start: Floats
@@ -83,13 +84,16 @@ class Moves:
     tools: tuple[Tool, ...]
     tool: Ints
     bodies: Bodies
+    stances: Mapping[int, Stance] = field(default_factory=lambda: NOTHING_SAID)
 
     def __len__(self) -> int:
         return len(self.row)
 
     def some(self, rows: Ints | Bools | slice) -> Moves:
         """Return some of the moves, in the order of `rows`."""
-        return replace(self, **{name: getattr(self, name)[rows] for name in PER_MOVE})
+        return replace(
+            self, stances=NOTHING_SAID, **{name: getattr(self, name)[rows] for name in PER_MOVE}
+        )
 
     @property
     def turning(self) -> Bools:
@@ -136,9 +140,13 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
     sweeps: list[Floats] = []
     rows, sections_of, blocks, rapid, feeds, lengths, tool_row = [], [], [], [], [], [], []
     tools: dict[Tool, int] = {}
+    stances: dict[int, Stance] = {}
+    begin = 0
     for index, section in enumerate(sections):
         path = section.path
         n = len(path)
+        stances.update((begin + block, stance) for block, stance in section.stances)
+        begin += n
         start, sweep = path.starts(), path.sweeps()
         start_axis, length = np.vstack([path.axis[:1], path.axis[:-1]]), path.lengths()
         before = sections[index - 1] if index else section
@@ -176,6 +184,7 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         length=np.concatenate([np.zeros(0), *lengths]),
         tools=tuple(tools),
         tool=_ints(tool_row),
+        stances=stances,
     )
 
 

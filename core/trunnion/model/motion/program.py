@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,13 +20,28 @@ STOPPED = 0.5
 """1/min: a spindle at this speed or below stands: speeds are written in whole turns."""
 
 
+class Stance(NamedTuple):
+    """How rotary axes stand: `side` is the sign of the angle of the axis that leans the tool (`model.material.leaning_axis`), 0 where it is
+    not said; `angles` in rad those of all of them, empty where they are not."""
+
+    side: int = 0
+    angles: tuple[float, ...] = ()
+
+
+UNSAID = Stance()
+"""A text that leaves it to the control."""
+NOTHING_SAID: Mapping[int, Stance] = MappingProxyType({})
+"""Stances of a text that leaves all to the control."""
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ProgramSection:
     """The motions of one operation with one tool. `spindle` 1/min; `block_lines` the text line of each block when read back, else empty.
 
     `width` ae and `depth` ap mm are the engagement that a `feed` in mm/min was chosen for; 0 where nothing is known of it. `dwell` s is how
     long the text makes the tool wait in all, the path's own dwells in it. At a constant `surface_speed` in m/min (0: none) the work turns
-    about the setup's z and `spindle` is never passed. `feed_mode` is how a text gives the feeds, which the path has in mm/min.
+    about the setup's z and `spindle` is never passed. `feed_mode` is how a text gives the feeds, which the path has in mm/min. `stances`
+    are what it says of the rotary axes, each with the block at whose end they stand so.
     """
 
     operation: str
@@ -38,6 +56,7 @@ class ProgramSection:
     dwell: float = 0.0
     surface_speed: float = 0.0
     feed_mode: FeedMode = FeedMode.MINUTE
+    stances: tuple[tuple[int, Stance], ...] = ()
 
     @property
     def spindle_stopped(self) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats, Ints
-from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.program import UNSAID, ProgramSection, Stance
 from trunnion.model.motion.toolpath import ACROSS, Mark, Motion, Toolpath
 from trunnion.model.spindle import FeedMode
 from trunnion.model.tool import AnyTool
@@ -43,7 +43,8 @@ class Pace(NamedTuple):
 
 @dataclass(slots=True, kw_only=True)
 class SectionBlocks:
-    """The blocks of a section while it grows; `minutes` are those of blocks fed in inverse time, else 0; `modes` how feeds are given."""
+    """The blocks of a section while it grows; `minutes` are those of blocks fed in inverse time, else 0; `modes` how feeds are given,
+    `stances` as in `ProgramSection`."""
 
     tool: AnyTool
     point: list[Point] = field(default_factory=list)
@@ -54,6 +55,7 @@ class SectionBlocks:
     line: list[int] = field(default_factory=list)
     dwell: list[float] = field(default_factory=list)
     modes: set[FeedMode] = field(default_factory=set)
+    stances: list[tuple[int, Stance]] = field(default_factory=list)
 
     @property
     def feed_mode(self) -> FeedMode:
@@ -178,6 +180,7 @@ class _Open:
             dwell=self.dwell,
             surface_speed=surface_speed,
             feed_mode=self.rows.feed_mode,
+            stances=tuple(self.rows.stances),
         )
 
 
@@ -186,7 +189,8 @@ class Sections:
 
     A section ends where an operation begins, the tool changes, or spindle or coolant change between feed moves. Its first block is a rapid:
     when the text goes on from a position that is not up at the clearance height, that position is the first block, so that what follows is
-    judged from where it really starts; after a tool change the tool comes from above, at the clearance height or higher.
+    judged from where it really starts; after a tool change the tool comes from above, at the clearance height or higher. `stance` is what
+    the text has said of the rotary axes for the block that comes next.
     """
 
     def __init__(self, interpreter: PoseInterpreter) -> None:
@@ -196,6 +200,7 @@ class Sections:
         self._open: _Open | None = None
         self._operation = ""
         self._waits = 0.0
+        self.stance = UNSAID
 
     def operation(self, name: str) -> None:
         """Begin an operation; its tool may still change before the first motion."""
@@ -297,6 +302,9 @@ class Sections:
     ) -> None:
         assert self._open is not None
         rows = self._open.rows
+        if self.stance != UNSAID:
+            rows.stances.append((len(rows.point), self.stance))
+            self.stance = UNSAID
         rows.point.append(point)
         rows.motion.append(motion)
         rows.centre.append(centre)

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
+from trunnion.model.motion.program import UNSAID, Stance
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import AnyTool
 from trunnion.post.readers.sections import (
@@ -147,9 +148,9 @@ class TiltedSections(Sections):
         self.tilt(np.eye(3), False)
         self.axis, self.follows = axis, True
 
-    def turn_to(self, line: int, code: str, matrix: Floats, top: str) -> None:
-        """Tilt the plane of the program to axes (3, 3), columns in the setup frame, and turn the tool along its z: at the top of the
-        machine, unless it points there; raise `BadInput` elsewhere."""
+    def turn_to(self, line: int, code: str, matrix: Floats, top: str, side: int) -> None:
+        """Tilt the plane of the program to axes (3, 3), columns in the setup frame, and turn the tool along its z, to the side named by
+        the text (`Stance`): at the top of the machine, unless it points there; raise `BadInput` elsewhere."""
         axis = self.axis if self.known else None
         keeps = axis is not None and np.linalg.norm(matrix[:, 2] - axis) <= SAME_DIRECTION
         if self.at is not None and not keeps:
@@ -157,6 +158,7 @@ class TiltedSections(Sections):
                 f"line {line}: {code} turns the tool while it is at the work; put {top} first"
             )
         self.tilt(matrix, True)
+        self.stance = UNSAID if keeps else Stance(side)
 
     def level_out(self) -> None:
         """Take the plane of the setup again; the tool points where it did."""
@@ -169,16 +171,18 @@ class TiltedSections(Sections):
         at_zero = angle is not None and not angle.any()
         self.tilt(np.eye(3), at_zero)
         self.axis = None if angle is None else axes_of(work_position, angle[None])[0]
+        self.stance = UNSAID if angle is None else Stance(0, tuple(angle.tolist()))
 
     def rapid(self, line: int, point: Point, tool: AnyTool, state: CuttingState) -> None:
         """Add a rapid to a point of the plane; where the tool was turned out of sight, with the way of the machine's axes before it where
         that is no even turn."""
-        goal = self._in_setup(point)
+        goal, stance = self._in_setup(point), self.stance
         if self.at is None and self._left is not None:
+            self.stance = UNSAID
             for axis in swivelled(self._work_position, self._left, np.array(goal[3:])):
                 between = (*goal[:3], *axis.tolist())
                 super().rapid(line, self.interpreter.above(between, tool) or between, tool, state)
-        self._left = None
+        self._left, self.stance = None, stance
         super().rapid(line, goal, tool, state)
         self._reached(point)
 

@@ -28,11 +28,11 @@ class TipModes(Modes):
         if isinstance(sections, TiltedSections):
             sections.follows = False
 
-    def tilt(self, block: Block, code: str, matrix: Floats) -> None:
-        """Tilt the plane of the program to axes (3, 3), columns in the setup frame, and turn the tool along its z: at the top of the
-        machine, unless it points there."""
+    def tilt(self, block: Block, code: str, matrix: Floats, side: int = 0) -> None:
+        """Tilt the plane of the program to axes (3, 3), columns in the setup frame, and turn the tool along its z, to the side named by
+        the text (`Stance`): at the top of the machine, unless it points there."""
         sections, top = self.tilted(block, code), self.language.words.top
-        sections.turn_to(block.line, code, matrix, top)
+        sections.turn_to(block.line, code, matrix, top, side)
 
     def level(self, block: Block, code: str) -> None:
         """Take the plane of the setup again; the tool points where it did."""

@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
+from trunnion.model.material import leaning_axis
 from trunnion.model.motion.program import ProgramSection
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode
@@ -235,7 +236,4 @@ class TipWriter(ProgramWriter):
     def first_lean(self, angle: Floats) -> float:
         """Return the angle of the axis that leans the tool, the first of two or the head's: its sign says which way to stand is meant."""
         assert self.work_position is not None
-        rotary = self.work_position.machine.rotary
-        of_head = [v for a, v in zip(rotary, angle.tolist(), strict=True) if a.carries == "tool"]
-        mixed = len({a.carries for a in rotary}) > 1
-        return float(of_head[0] if mixed else angle[0])
+        return float(angle[leaning_axis(self.work_position.machine)])

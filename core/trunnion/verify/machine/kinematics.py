@@ -8,12 +8,14 @@ Robotic Manipulation, 1994, section 3.2).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.model.material import Axis, Machine
+from trunnion.model.material import Axis, Machine, leaning_axis
+from trunnion.model.motion.program import NOTHING_SAID, Stance
 from trunnion.verify.kernels.rotary import choose_angles_greedy
 from trunnion.verify.motion import Moves
 
@@ -23,6 +25,8 @@ UNTURNED = 1e-9
 """Two directions closer than this (their difference's length) are one."""
 SLACK = 1e-6
 """rad: how far an angle may be beyond a limit before it counts as outside."""
+SAID = 1e-4
+"""rad: how far a written angle may be from the one that holds the axis: angles and vectors are rounded."""
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -45,7 +49,7 @@ class AxisPositions:
 def axis_positions(moves: Moves, machine: Machine, foot: Floats) -> AxisPositions:
     """Return how a machine stands along moves; `foot` (3,) is the position of the work, in the setup frame, on the middle of the table."""
     move, tip, axis = poses_of(moves)
-    rotary, good = rotary_angles(axis, machine)
+    rotary, good = rotary_angles(axis, machine, _said_by_pose(moves, move))
     reached = np.ones(len(moves), bool)
     reached[move[~good]] = False
     gauge = (
@@ -63,11 +67,15 @@ def axis_positions(moves: Moves, machine: Machine, foot: Floats) -> AxisPosition
 
 
 def poses_of(moves: Moves) -> tuple[Ints, Floats, Floats]:
-    """Return poses along moves, start and end of each among them: move (k,), tip (k, 3), axis (k, 3)."""
+    """Return poses along moves, start and end of each among them: move (k,), tip (k, 3), axis (k, 3).
+
+    Of moves by which the machine's axes go straight to where a text says, start and end are all.
+    """
     between = angle_between(moves.start_axis, moves.end_axis)
     steps = np.maximum(
         1, np.ceil(np.maximum(between, np.abs(moves.sweep)) / STEP - UNTURNED)
     ).astype(np.int64)
+    steps[list(moves.stances)] = 1
     move = np.repeat(np.arange(len(moves)), steps + 1)
     share = (np.arange(len(move)) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)) / steps[
         move
@@ -98,10 +106,25 @@ def turned_axes(start: Floats, end: Floats, between: Floats, share: Floats) -> F
     return np.where(still[:, None], start, a[:, None] * start + b[:, None] * end)
 
 
-def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
+def _said_by_pose(moves: Moves, move: Ints) -> Mapping[int, Stance]:
+    """Return what is said of the rotary axes by pose: at the end of a move, and at its start where the tool keeps its direction."""
+    rows = np.array(list(moves.stances), np.int64)
+    last = (np.searchsorted(move, rows, side="right") - 1).tolist()
+    begun = dict(zip(last, moves.stances.values(), strict=True))
+    kept = np.abs(moves.end_axis - moves.start_axis)[rows].max(axis=1, initial=0.0) < UNTURNED
+    first = np.searchsorted(move, rows[kept]).tolist()
+    return begun | {
+        pose: moves.stances[row] for pose, row in zip(first, rows[kept].tolist(), strict=True)
+    }
+
+
+def rotary_angles(
+    axis: Floats, machine: Machine, said: Mapping[int, Stance] = NOTHING_SAID
+) -> tuple[Floats, Bools]:
     """Return the rotary angles (k, a) in rad at which a machine holds tool axes (k, 3), each near the one before, and which it can hold.
 
-    Of both ways to begin, the one that passes the limits at fewer poses is taken, then the one that turns less.
+    Of both ways to begin, the one that passes the limits at fewer poses is taken, then the one that turns less. At poses of `said` the
+    axes stand as the text says, if they hold the tool axis so: a control chooses only where its text leaves it open.
     """
     rotary = machine.rotary
     if not rotary:
@@ -110,12 +133,26 @@ def rotary_angles(axis: Floats, machine: Machine) -> tuple[Floats, Bools]:
         return np.zeros((len(axis), len(rotary))), np.ones(len(axis), bool)
     angles, free, good = _both_solutions(axis, rotary)
     low, high = (np.radians([getattr(a, end) for a in rotary]) for end in ("low", "high"))
+    for pose, stance in said.items():
+        way = _said(angles[pose], free[pose], stance, leaning_axis(machine))
+        if way is not None:
+            angles[pose], free[pose] = way, free[pose] & (not stance.angles)
     tried = []
     for first in (0, 1):
         angles_used = np.zeros((len(axis), len(rotary)))
         turned, outside = choose_angles_greedy(angles, free, low, high, first, SLACK, angles_used)
         tried.append((outside, turned, first, angles_used))
     return min(tried, key=lambda t: t[:3])[3], good
+
+
+def _said(both: Floats, free: Bools, stance: Stance, leaning: int) -> Floats | None:
+    """Return the angles (a,) of the one of both ways (2, a) to hold an axis that a text means, None where it means neither or either."""
+    if stance.angles:
+        given = np.array(stance.angles)
+        off = np.abs(np.remainder(both - given + math.pi, 2.0 * math.pi) - math.pi)
+        return given if (free | (off < SAID)).all(axis=1).any() else None
+    rows = np.flatnonzero(np.sign(both[:, leaning]) == stance.side)
+    return both[rows[0]] if len(rows) == 1 else None
 
 
 def can_hold(axis: Floats, machine: Machine) -> Bools:

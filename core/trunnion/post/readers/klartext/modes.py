@@ -181,7 +181,8 @@ class KlartextModes:
                 f"line {line}: of PLANE SPATIAL only TURN FMAX, SEQ or SYM, and TABLE ROT are understood"
             )
         a, b, c = (math.radians(v or 0.0) for v in angles)
-        tilted.turn_to(line, "PLANE SPATIAL", _spatial(a, b, c), self.words.top)
+        side = ("SEQ+" in rest) - ("SEQ-" in rest)
+        tilted.turn_to(line, "PLANE SPATIAL", _spatial(a, b, c), self.words.top, side)
 
     def function(self, block: KlartextBlock) -> None:
         """Follow the tip from here on, or no longer (`FUNCTION TCPM`, `FUNCTION RESET TCPM`)."""

@@ -73,7 +73,8 @@ class SinumerikModes(TipModes):
             return
         if not self.state.length_on:
             raise BadInput(f"line {block.line}: CYCLE800 without the tool's length; put D1 first")
-        self.tilt(block, "CYCLE800", plane_of(CallParameters(block)))
+        given = CallParameters(block)
+        self.tilt(block, "CYCLE800", plane_of(given), int(given.number("DIR", 0.0)))
 
     def check_smoothing(self, block: Block) -> None:
         """Check how far CYCLE832 lets the control leave the path."""
