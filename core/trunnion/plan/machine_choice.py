@@ -25,26 +25,26 @@ _AZIMUTHS = 24
 def machine_for(blank: Blank, lean: float, settings: SetupSettings, shop: Shop) -> str:
     """Return the name of the machine: the chosen one, else the first that takes a blank, whose tool leans by `lean` (rad) from its z axis.
 
-    Machines are tried by the number of their rotary axes, then by the room that their travel makes. Where none takes the blank it is the
+    Machines are tried by the number of their rotary axes, then by the volume that their travel makes. Where none takes the blank it is the
     largest that has the axes, or the largest of all: the planner says what it lacks.
     """
     if settings.machine:
         return settings.machine
     mills = sorted(
         (m for m in shop.machines.values() if m.work_spindle is None),
-        key=lambda m: (len(m.rotary), _room(m), m.name),
+        key=lambda m: (len(m.rotary), _volume(m), m.name),
     )
     fits = (m for m in mills if takes(m, blank, lean, settings.clearance))
     leaning = [m for m in mills if bool(m.rotary) >= bool(lean)]
-    largest = max(leaning or mills, key=_room, default=None)
-    chosen = next(fits, largest)
-    return chosen.name if chosen is not None else ""
+    largest = max(leaning or mills, key=_volume, default=None)
+    machine = next(fits, largest)
+    return machine.name if machine is not None else ""
 
 
 def takes(machine: Machine, blank: Blank, lean: float, clearance: float) -> bool:
     """Return whether a machine's travel is enough for a blank, with the tool upright and, all round, leaning by `lean` (rad)."""
-    room = _travel(machine)
-    return any(bool(np.all(need <= room)) for need in _needs(machine, blank, lean, clearance))
+    travel = _travel(machine)
+    return any(bool(np.all(need <= travel)) for need in _needs(machine, blank, lean, clearance))
 
 
 def _needs(machine: Machine, blank: Blank, lean: float, clearance: float) -> Iterator[Floats]:
@@ -93,6 +93,6 @@ def _travel(machine: Machine) -> Floats:
     return np.array([(axis := machine.axis(name)).high - axis.low for name in "XYZ"])
 
 
-def _room(machine: Machine) -> float:
-    """Return the room in mm3 that a machine's linear axes go through."""
+def _volume(machine: Machine) -> float:
+    """Return the volume in mm3 that a machine's linear axes go through."""
     return float(np.prod(_travel(machine)))

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
-from trunnion.model.motion.program import NOTHING_SAID, ProgramSection, Stance
+from trunnion.model.motion.program import NO_STANCES, ProgramSection, Stance
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.tool import Tool
 from trunnion.verify.cutter import Bodies, bodies_of, bodies_of_one
@@ -84,7 +84,7 @@ class Moves:
     tools: tuple[Tool, ...]
     tool: Ints
     bodies: Bodies
-    stances: Mapping[int, Stance] = field(default_factory=lambda: NOTHING_SAID)
+    stances: Mapping[int, Stance] = field(default_factory=lambda: NO_STANCES)
 
     def __len__(self) -> int:
         return len(self.row)
@@ -92,7 +92,7 @@ class Moves:
     def some(self, rows: Ints | Bools | slice) -> Moves:
         """Return some of the moves, in the order of `rows`."""
         return replace(
-            self, stances=NOTHING_SAID, **{name: getattr(self, name)[rows] for name in PER_MOVE}
+            self, stances=NO_STANCES, **{name: getattr(self, name)[rows] for name in PER_MOVE}
         )
 
     @property

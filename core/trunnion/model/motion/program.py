@@ -30,7 +30,7 @@ class Stance(NamedTuple):
 
 UNSAID = Stance()
 """A text that leaves it to the control."""
-NOTHING_SAID: Mapping[int, Stance] = MappingProxyType({})
+NO_STANCES: Mapping[int, Stance] = MappingProxyType({})
 """Stances of a text that leaves all to the control."""
 
 

@@ -30,7 +30,7 @@ def with_machine(
                 f"there is no machine {name} in the catalogue; known: {', '.join(sorted(shop.machines))}"
             )
     lean = planner.lean if isinstance(planner, Leaning) else 0.0
-    chosen = machine_for(blank, lean, settings, shop)
-    if not chosen:
+    name = machine_for(blank, lean, settings, shop)
+    if not name:
         raise BadInput("the catalogue has no machine that mills; describe one in the user folder")
-    return {**choices, MACHINE: chosen}
+    return {**choices, MACHINE: name}

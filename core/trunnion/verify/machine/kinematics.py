@@ -15,7 +15,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Axis, Machine, leaning_axis
-from trunnion.model.motion.program import NOTHING_SAID, Stance
+from trunnion.model.motion.program import NO_STANCES, Stance
 from trunnion.verify.kernels.rotary import choose_angles_greedy
 from trunnion.verify.motion import Moves
 
@@ -25,7 +25,7 @@ UNTURNED = 1e-9
 """Two directions closer than this (their difference's length) are one."""
 SLACK = 1e-6
 """rad: how far an angle may be beyond a limit before it counts as outside."""
-SAID = 1e-4
+ROUNDED = 1e-4
 """rad: how far a written angle may be from the one that holds the axis: angles and vectors are rounded."""
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -49,7 +49,7 @@ class AxisPositions:
 def axis_positions(moves: Moves, machine: Machine, foot: Floats) -> AxisPositions:
     """Return how a machine stands along moves; `foot` (3,) is the position of the work, in the setup frame, on the middle of the table."""
     move, tip, axis = poses_of(moves)
-    rotary, good = rotary_angles(axis, machine, _said_by_pose(moves, move))
+    rotary, good = rotary_angles(axis, machine, _stances_by_pose(moves, move))
     reached = np.ones(len(moves), bool)
     reached[move[~good]] = False
     gauge = (
@@ -106,7 +106,7 @@ def turned_axes(start: Floats, end: Floats, between: Floats, share: Floats) -> F
     return np.where(still[:, None], start, a[:, None] * start + b[:, None] * end)
 
 
-def _said_by_pose(moves: Moves, move: Ints) -> Mapping[int, Stance]:
+def _stances_by_pose(moves: Moves, move: Ints) -> Mapping[int, Stance]:
     """Return what is said of the rotary axes by pose: at the end of a move, and at its start where the tool keeps its direction."""
     rows = np.array(list(moves.stances), np.int64)
     last = (np.searchsorted(move, rows, side="right") - 1).tolist()
@@ -119,11 +119,11 @@ def _said_by_pose(moves: Moves, move: Ints) -> Mapping[int, Stance]:
 
 
 def rotary_angles(
-    axis: Floats, machine: Machine, said: Mapping[int, Stance] = NOTHING_SAID
+    axis: Floats, machine: Machine, stances: Mapping[int, Stance] = NO_STANCES
 ) -> tuple[Floats, Bools]:
     """Return the rotary angles (k, a) in rad at which a machine holds tool axes (k, 3), each near the one before, and which it can hold.
 
-    Of both ways to begin, the one that passes the limits at fewer poses is taken, then the one that turns less. At poses of `said` the
+    Of both ways to begin, the one that passes the limits at fewer poses is taken, then the one that turns less. At poses of `stances` the
     axes stand as the text says, if they hold the tool axis so: a control chooses only where its text leaves it open.
     """
     rotary = machine.rotary
@@ -133,10 +133,10 @@ def rotary_angles(
         return np.zeros((len(axis), len(rotary))), np.ones(len(axis), bool)
     angles, free, good = _both_solutions(axis, rotary)
     low, high = (np.radians([getattr(a, end) for a in rotary]) for end in ("low", "high"))
-    for pose, stance in said.items():
-        way = _said(angles[pose], free[pose], stance, leaning_axis(machine))
-        if way is not None:
-            angles[pose], free[pose] = way, free[pose] & (not stance.angles)
+    for pose, stance in stances.items():
+        solution = _solution_of(angles[pose], free[pose], stance, leaning_axis(machine))
+        if solution is not None:
+            angles[pose], free[pose] = solution, free[pose] & (not stance.angles)
     tried = []
     for first in (0, 1):
         angles_used = np.zeros((len(axis), len(rotary)))
@@ -145,12 +145,12 @@ def rotary_angles(
     return min(tried, key=lambda t: t[:3])[3], good
 
 
-def _said(both: Floats, free: Bools, stance: Stance, leaning: int) -> Floats | None:
+def _solution_of(both: Floats, free: Bools, stance: Stance, leaning: int) -> Floats | None:
     """Return the angles (a,) of the one of both ways (2, a) to hold an axis that a text means, None where it means neither or either."""
     if stance.angles:
         given = np.array(stance.angles)
         off = np.abs(np.remainder(both - given + math.pi, 2.0 * math.pi) - math.pi)
-        return given if (free | (off < SAID)).all(axis=1).any() else None
+        return given if (free | (off < ROUNDED)).all(axis=1).any() else None
     rows = np.flatnonzero(np.sign(both[:, leaning]) == stance.side)
     return both[rows[0]] if len(rows) == 1 else None
 
