@@ -10,6 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from surface_forms import cylinder, joined, plane
+from trunnion.geometry.kernels.collapses import (
+    apart,
+    apart_loop,
+    shortest_edges,
+    shortest_edges_loop,
+)
 from trunnion.geometry.kernels.edge_numbers import FEW, numbered_edges, numbered_edges_loop
 from trunnion.geometry.sheet.edge_collapses import SHORT, TURN, collapsed
 from trunnion.geometry.sheet.edge_flips import OBTUSE, ROUNDS, flipped
@@ -206,3 +212,30 @@ def test_nothing_wanted_leaves_a_sheet_as_it_is() -> None:
     same = split_where(sheet, lambda middle, length: np.zeros(len(length), dtype=bool), 0.1)
     assert np.array_equal(same.points, sheet.points)
     assert len(same.triangles) == len(sheet.triangles)
+
+
+corners_at_random = st.integers(3, 14).flatmap(
+    lambda n: st.lists(st.permutations(range(n)).map(lambda c: c[:3]), min_size=1, max_size=30)
+)
+
+
+@settings(deadline=None)
+@given(corners_at_random, st.permutations(range(14)), st.integers(0, 14))
+def test_points_go_together_as_by_the_plain_reference(triangles, order, count) -> None:
+    corners, order = np.array(triangles, np.int64), np.array(order[:count], np.int64)
+    found = apart_loop(corners, order, 14)
+    assert np.array_equal(found, apart(corners, order, 14))
+    # None of their triangles share a corner, and every other one has a corner in common with one of theirs.
+    stars = {p: set(corners[(corners == p).any(axis=1)].ravel().tolist()) for p in order.tolist()}
+    gone = order[found].tolist()
+    assert all(not stars[p] & stars[q] for p in gone for q in gone if p != q)
+    assert all(any(stars[p] & stars[q] for q in gone) for p in order[~found].tolist())
+
+
+@settings(deadline=None)
+@given(corners_at_random, st.lists(st.integers(1, 6), min_size=90, max_size=90), st.integers(1, 7))
+def test_the_shortest_edges_are_those_of_the_plain_reference(triangles, sizes, limit) -> None:
+    ends = edges_of(np.array(triangles, np.int64), 14)[0]
+    size = np.array(sizes[: len(ends)], float)
+    found = shortest_edges_loop(ends, size, float(limit), 14)
+    assert np.array_equal(found, shortest_edges(ends, size, float(limit), 14))
