@@ -157,10 +157,18 @@ def shell() -> Path:
 
 
 def test_program_refuses_a_casing_without_rotary_axes_in_one_line(shell, tmp_path, capsys) -> None:
-    assert main(["program", str(shell), "-o", str(tmp_path / "out")]) == BAD
+    three_axes = ["--set", "setup.machine=Mill 1200"]
+    assert main(["program", str(shell), "-o", str(tmp_path / "out"), *three_axes]) == BAD
     said = capsys.readouterr().err
     assert "the machine has no rotary axes; choose a machine" in said
     assert said.startswith("trunnion: ") and len(said.splitlines()) == 1
+
+
+def test_a_casing_gets_a_machine_that_leans_its_tools_where_none_is_named(shell) -> None:
+    engine = Engine()
+    session = engine.run(engine.open(shell), until="route")
+    (machine,) = {engine.context.shop.machine(s.machine) for s in session.setups}
+    assert len(machine.rotary) == 2 and session.process.operations
 
 
 def test_recognize_says_what_it_takes_a_casing_for_and_finds_its_features(shell, capsys) -> None:
