@@ -9,13 +9,15 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.frame import Frame
-from trunnion.model.blank import Blank
+from trunnion.model.blank import Blank, Revolved
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.fixture import Fixture
 from trunnion.model.setup import Setup
 from trunnion.settings import setting, settings
 
-ORIGINS = ("corner top", "centre top", "corner bottom", "centre bottom")
+AUTOMATIC = "automatic"
+"""The middle of a round blank's top, which is found by its circumference, the corner of any other."""
+ORIGINS = (AUTOMATIC, "corner top", "centre top", "corner bottom", "centre bottom")
 
 
 @settings("setup")
@@ -23,10 +25,11 @@ class SetupSettings:
     """Where the work offset lies, how high the tool travels, and on which machine."""
 
     origin: str = setting(
-        "corner top",
+        AUTOMATIC,
         choices=ORIGINS,
         label="Origin",
-        help="Place of the program's zero on the blank, seen from the spindle; corner: smallest x and y.",
+        help="Place of the program's zero on the blank, seen from the spindle; corner: smallest x and y; automatic: the centre of the top "
+        "of a blank of revolution, the top's corner of others.",
     )
     clearance: float = setting(
         20.0,
@@ -102,10 +105,13 @@ def from_below(feature: Feature) -> bool:
 
 def _setup(n: int, frame: Frame, blank: Blank, settings: SetupSettings) -> Setup:
     low, high = blank.box_in(frame)
-    position, height = settings.origin.split()
-    origin = low if position == "corner" else 0.5 * (low + high)
+    origin = settings.origin
+    if origin == AUTOMATIC:
+        origin = "centre top" if isinstance(blank, Revolved) else "corner top"
+    position, height = origin.split()
+    zero = low if position == "corner" else 0.5 * (low + high)
     z = high[2] if height == "top" else low[2]
-    offset = frame.moved(np.array([origin[0], origin[1], z]))
+    offset = frame.moved(np.array([zero[0], zero[1], z]))
     return Setup(
         name=f"S{n + 1}",
         frame=offset,

@@ -9,6 +9,7 @@ from pytest import approx
 
 from flat_parts import MILL, blank_of, panel
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.model.blank import Revolved
 from trunnion.model.feature import Feature
 from trunnion.plan.blank import BlankSettings, make_blank
 from trunnion.plan.setups import SetupSettings, make_setups
@@ -45,6 +46,17 @@ def test_zero_may_lie_in_the_middle_of_the_bottom():
     )
     assert setup.frame.origin == approx([100, 50, 0])
     assert setup.clearance == 52.0
+
+
+def test_zero_lies_on_the_axis_of_a_round_blank_unless_its_corner_is_asked_for():
+    _, recognition = panel()
+    bar = Revolved.cylinder(WORLD, 60.0, (-5.0, 40.0), "C45", 7.8)
+    (setup,) = make_setups(recognition, bar, choose(SetupSettings, MILL))
+    assert setup.frame.origin == approx([0, 0, 40])
+    (setup,) = make_setups(
+        recognition, bar, choose(SetupSettings, {**MILL, "origin": "corner top"})
+    )
+    assert setup.frame.origin == approx([-60, -60, 40])
 
 
 def test_a_feature_reached_from_below_gets_a_setup_turned_about_x():
