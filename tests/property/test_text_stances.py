@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from leaning_paths import HEADER, lean, path_of, program, standing
@@ -81,6 +81,7 @@ def test_a_side_that_is_not_said_is_the_controls_choice():
 directions = st.tuples(st.floats(1.0, 100.0), st.floats(0.0, 360.0))
 
 
+@settings(deadline=None)
 @given(
     st.sampled_from(DIALECTS),
     st.sampled_from(MACHINES),
@@ -107,3 +108,25 @@ def test_sections_begin_where_the_post_has_the_axes_stand(name, machine, holes, 
         at = int(sections[section[pose]].operation.split("-")[1]) - 1
         if abs(math.sin(wanted[at][k])) > 1e-3:
             assert np.sign(angles[pose, k]) == np.sign(wanted[at][k])
+
+
+@pytest.mark.parametrize("machine", MACHINES, ids=lambda m: m.name)
+@pytest.mark.parametrize("name", DIALECTS)
+def test_between_operations_the_tool_goes_round_all_that_stands_on_the_table(name, machine):
+    """From one side of the part to the other a straight way would lead through it."""
+    place = standing(machine)
+    paths = drilled(lean(80.0, 0.0), lean(80.0, 170.0), lean(10.0, 350.0), lean(85.0, 90.0))
+    made, dialect = program(*paths), registry.get("dialects", name)()
+    try:
+        text = dialect.write([made], HEADER, PostSettings(), {"S1": place})
+    except Refused:
+        assert machine.name == "Trunnion 500 B"
+        return
+    (read,) = dialect.read(text, (FLAT_16,), [S1], {"S1": place})
+    moves = moves_of(read.sections)
+    turning = np.flatnonzero(moves.rapid & moves.turning)
+    assert len(turning) > 10
+    for share in np.linspace(0.0, 1.0, 11):
+        tip = (1.0 - share) * moves.start[turning] + share * moves.end[turning]
+        away = np.linalg.norm(tip - place.centre, axis=1)
+        assert away.min() > 0.99 * place.radius

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
+from trunnion.model.material import leaning_axis
 from trunnion.model.motion.program import UNSAID, Stance
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import AnyTool
@@ -76,23 +77,27 @@ def angle_at(work_position: WorkPosition, axis: Floats) -> Floats:
 
 
 def swivelled(work_position: WorkPosition, first: Floats, last: Floats) -> Floats:
-    """Return the tool's directions (k, 3) between two while the rotary axes go straight from one to the other, in steps; none where an even
-    turn stays within their limits too.
+    """Return the tool's directions (k, 3) on the way from one to another in steps, the first among them: by an even turn where that stays
+    within the limits of the rotary axes, else as these go straight; none where both are one.
 
     Between two directions that lean alike an even turn leans more, which the machine never does.
     """
     angle = math.atan2(float(np.linalg.norm(np.cross(first, last))), float(first @ last))
-    share = np.linspace(0.0, 1.0, max(2, math.ceil(angle / SWIVEL)) + 1)[:, None]
-    even = (1.0 - share) * first + share * last
-    size = np.linalg.norm(even, axis=1, keepdims=True)
-    if (size < SAME_DIRECTION).any() or _holds(work_position, even / size):
+    if angle < SAME_DIRECTION:
         return np.zeros((0, 3))
+    share = np.linspace(0.0, 1.0, max(2, math.ceil(angle / SWIVEL)) + 1)[:, None]
+    if angle < math.pi - SWIVEL:
+        even = (np.sin((1.0 - share) * angle) * first + np.sin(share * angle) * last) / math.sin(
+            angle
+        )
+        if _holds(work_position, even):
+            return even[:-1]
     start, end = angle_at(work_position, first), angle_at(work_position, last)
     low, high = work_position.limits
     way = end - start
     way = np.where(high - low >= TURN, np.remainder(way + math.pi, TURN) - math.pi, way)
     count = max(2, math.ceil(float(np.abs(way).max()) / SWIVEL))
-    return axes_of(work_position, start + np.arange(1, count)[:, None] / count * way)
+    return axes_of(work_position, start + np.arange(count)[:, None] / count * way)
 
 
 def _holds(work_position: WorkPosition, axes: Floats) -> bool:
@@ -174,12 +179,13 @@ class TiltedSections(Sections):
         self.stance = UNSAID if angle is None else Stance(0, tuple(angle.tolist()))
 
     def rapid(self, line: int, point: Point, tool: AnyTool, state: CuttingState) -> None:
-        """Add a rapid to a point of the plane; where the tool was turned out of sight, with the way of the machine's axes before it where
-        that is no even turn."""
+        """Add a rapid to a point of the plane; where the tool was turned out of sight, with the way round all that stands on the table: at
+        each direction the tip is over the point, beyond the sphere round that. A straight way there would go through it."""
         goal, stance = self._in_setup(point), self.stance
         if self.at is None and self._left is not None:
-            self.stance = UNSAID
-            for axis in swivelled(self._work_position, self._left, np.array(goal[3:])):
+            last = np.array(goal[3:])
+            for axis in swivelled(self._work_position, self._left, last):
+                self.stance = Stance(self._side_of(stance, last))
                 between = (*goal[:3], *axis.tolist())
                 super().rapid(line, self.interpreter.above(between, tool) or between, tool, state)
         self._left, self.stance = None, stance
@@ -214,6 +220,13 @@ class TiltedSections(Sections):
         """End the section; see `Sections`."""
         super().change_tool()
         self._local = self._left = None
+
+    def _side_of(self, stance: Stance, axis: Floats) -> int:
+        """Return the side to which a tool along an axis (3,) leans in a stance; 0 where it is not said, or the tool leans to none."""
+        lead = leaning_axis(self._work_position.machine)
+        if abs(angle_at(self._work_position, axis)[lead]) < SLACK:
+            return 0
+        return int(np.sign(stance.angles[lead])) if stance.angles else stance.side
 
     def _in_setup(self, point: Point) -> Point:
         if self.level:
