@@ -1,4 +1,4 @@
-"""A part that no machine takes: nothing is planned, nothing is looked at by the micron, and the reason is told at the end."""
+"""A part that its machine does not take: nothing is planned, nothing is looked at by the micron, and the reason is told at the end."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ def refused(*args, **options):
 
 
 @pytest.mark.parametrize("family", ["panel", "surface"])
-def test_what_no_machine_takes_is_rejected_at_once_with_the_reason(family, tmp_path, monkeypatch):
+def test_what_the_machine_does_not_take_is_rejected_at_once_with_the_reason(
+    family, tmp_path, monkeypatch
+):
     part = box_shape(1500.0, 100.0, 20.0) if family == "panel" else dome_on_a_plate_shape()
     engine = Engine()
     session = engine.open(written(part))
     # A blank of metres around a small part is as much too large as a part of metres, and quicker to test.
-    session = engine.with_choices(session, {"blank.side": 499.0} if family == "surface" else {})
+    words = {"setup.machine": "Mill 1200"} | ({"blank.side": 499.0} if family == "surface" else {})
+    session = engine.with_choices(session, words)
     monkeypatch.setattr(proof, "prove_programs", refused)
     monkeypatch.setattr(Context, "skin", refused)
     session = engine.run(session)
