@@ -192,26 +192,21 @@ def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
             )
 
 
+def motion_row(moves):
+    """Return the second of some moves as the kernels read it."""
+    row = np.zeros(tool_motion.MOTION_COLUMNS)
+    fields = ("start", "end", "start_axis", "end_axis", "centre", "sweep")
+    tool_motion.fill_tool_motion(*(getattr(moves, name)[1] for name in fields), row)
+    return row
+
+
 @settings(deadline=None, max_examples=60, phases=[Phase.explicit, Phase.generate])
 @given(
     form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES, room=st.integers(1, 3)
 )
 def test_a_search_without_room_for_its_open_tasks_errs_deep(form, move, triangles, room):
-    moves, row = moves_for(FORMS[form], move), np.zeros(tool_motion.MOTION_COLUMNS)
-    tool_motion.fill_tool_motion(
-        *(
-            a[1]
-            for a in (
-                moves.start,
-                moves.end,
-                moves.start_axis,
-                moves.end_axis,
-                moves.centre,
-                moves.sweep,
-            )
-        ),
-        row,
-    )
+    moves = moves_for(FORMS[form], move)
+    row = motion_row(moves)
     run = moves.bodies.piece[0, [body.CLOSED_FIRST, body.CLOSED_LAST]].astype(int)
     normal = np.cross(triangles[0][1] - triangles[0][0], triangles[0][2] - triangles[0][0])
     normal = normal / np.linalg.norm(normal) if normal.any() else np.array([0.0, 0.0, 1.0])
@@ -291,16 +286,7 @@ def test_no_point_of_an_arc_leaves_its_chord_by_more_than_its_bulge(turn):
     axis, centre, start = np.array([0.0, 0.0, 1.0]), np.zeros(3), np.array([3.3, 0.0, 4.0])
     end = np.array([3.3 * math.cos(turn), 3.3 * math.sin(turn), 2.0])
     move = (start, end, axis, axis, centre, turn)
-    moves, row = moves_for(FORMS["barrel"], move), np.zeros(tool_motion.MOTION_COLUMNS)
-    ways_there = (
-        moves.start,
-        moves.end,
-        moves.start_axis,
-        moves.end_axis,
-        moves.centre,
-        moves.sweep,
-    )
-    tool_motion.fill_tool_motion(*(a[1] for a in ways_there), row)
+    row = motion_row(moves_for(FORMS["barrel"], move))
     ends, span = np.zeros((2, tool_motion.END_COLUMNS)), np.zeros(tool_motion.SPAN_COLUMNS)
     tool_motion.fill_swept_segment(row, 0.0, 1.0, ends, span)
     tips = poses(move, np.linspace(0.0, 1.0, 721))[0]

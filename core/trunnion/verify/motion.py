@@ -64,8 +64,8 @@ class Moves:
     an arc about the axis) and the axis turns at an even rate in the plane of both. centre (n, 3) of arcs, NaN otherwise; sweep (n,) the
     signed angle an arc turns, rad. upright (n,): the axis is +z all along; row (n, 15): those as the strip kernel reads them.
     section (n,), block (n,) where each comes from; rapid (n,); feed (n,) mm/min; length (n,) mm of the tip's path.
-    tools: the tools in use, tool (n,) their rows, bodies theirs. stances: what is said of the rotary axes at the
-    end of a move, by its row; of some of the moves nothing is.
+    tools: the tools in use, tool (n,) their rows, bodies theirs. stances: what the text says of the rotary axes at
+    the end of a move, by its row; `some` moves have none.
     """
 
     start: Floats

@@ -38,6 +38,10 @@ def chosen(blank, lean, shop=SHOP, **words) -> str:
     return machine_for(blank, lean, choose(SetupSettings, words), shop)
 
 
+def travel_volume(machine) -> float:
+    return math.prod(machine.axis(n).high - machine.axis(n).low for n in "XYZ")
+
+
 def test_an_upright_tool_asks_for_three_axes_and_the_smallest_machine_that_takes_the_blank():
     assert chosen(plate(600, 300, 40), UPRIGHT) == "Mill 1200"
     assert chosen(plate(1900, 700, 40), UPRIGHT) == "Gantry 4000"
@@ -45,14 +49,13 @@ def test_an_upright_tool_asks_for_three_axes_and_the_smallest_machine_that_takes
 
 def test_a_leaning_tool_asks_for_rotary_axes_that_lean_it_all_round():
     name = chosen(disc(60, 40), LYING)
-    machine = SHOP.machine(name)
-    assert len(machine.rotary) == 2
-    smaller = [
-        m
-        for m in SHOP.machines.values()
-        if m.rotary and math.prod(a.high - a.low for a in m.axes[:3]) < machine.axis("X").high
-    ]
-    assert not any(takes(m, disc(60, 40), LYING, 20.0) for m in smaller)
+    mills = [m for m in SHOP.machines.values() if m.work_spindle is None]
+    fit = [m for m in mills if takes(m, disc(60, 40), LYING, 20.0)]
+    assert len(fit) > 2 and all(len(m.rotary) == 2 for m in fit)
+    assert name == min(fit, key=travel_volume).name
+    assert travel_volume(SHOP.machine(chosen(disc(310, 150), LYING))) > travel_volume(
+        SHOP.machine(name)
+    )
 
 
 def test_a_large_ring_is_not_put_on_a_table_that_it_just_covers():
