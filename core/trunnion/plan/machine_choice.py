@@ -13,6 +13,7 @@ from trunnion.model.material import Machine
 from trunnion.plan.setups import SetupSettings
 from trunnion.shop import Shop
 from trunnion.shop.kinematics import SLACK, UP, WorkPosition, rotary_solutions, words_of
+from trunnion.shop.rotary_angles import TURN
 
 _GAUGE = 150.0
 """mm from the spindle's face to the tip of a usual tool in its holder."""
@@ -61,9 +62,11 @@ def _needs(machine: Machine, blank: Blank, lean: float, clearance: float) -> Ite
     foot = np.array([centre[0], centre[1], low[2]])
     work = WorkPosition(machine=machine, foot=foot, centre=centre, radius=radius)
     tips, axes = _around(low, high, radius, lean)
-    angle, _, held = rotary_solutions(machine, axes)
+    either, _, held = rotary_solutions(machine, axes)
     least, most = work.limits
-    allowed = np.all((angle >= least - SLACK) & (angle <= most + SLACK), axis=2)
+    # Solutions may be whole turns off: the smallest angle that is not below the limit decides.
+    angle = least - SLACK + np.mod(either - least + SLACK, TURN)
+    allowed = np.all(angle <= most + SLACK, axis=2)
     if not (held.all() and allowed.any(axis=1).all()):
         return
     for way in (0, 1):

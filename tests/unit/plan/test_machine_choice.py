@@ -121,3 +121,13 @@ def test_an_unknown_machine_is_refused_with_the_known_ones():
 def test_a_catalogue_without_mills_is_told():
     with pytest.raises(BadInput, match="no machine that mills"):
         with_machine(planner_for("panel"), plate(9, 9, 9), {}, replace(SHOP, machines={}))
+
+
+def test_the_limits_of_an_axis_are_held_against_its_angles_whole_turns_apart():
+    """A lean of 60 degrees about B is -300 too: a table that leans to 110 takes it."""
+    small = SHOP.machine("Trunnion 500 B")
+    assert takes(small, disc(60, 40), math.radians(60.0), 20.0)
+    assert not takes(small, disc(60, 40), math.radians(115.0), 20.0)
+    # Leaning the other way alone the table reaches 35 degrees; C turns the work round, so both signs of B are never needed.
+    short = tuple(replace(a, high=50.0) if a.name == "B" else a for a in small.axes)
+    assert not takes(replace(small, axes=short), disc(60, 40), math.radians(60.0), 20.0)
