@@ -82,6 +82,7 @@ def _reached(
         spaces[key] = HoleSpace(
             space=SetupSpace.of(state.part, state.recognition, state.blank, setup),
             clearance=state.route.reach_clearance,
+            skin=state.context.skin(tolerance.CHORD, state.progress),
         )
     around = spaces[key]
     shape = hole_in(feature, state.recognition.frame, around.space.setup.frame)

@@ -12,7 +12,9 @@ from dataclasses import dataclass, field
 
 from trunnion import tolerance
 from trunnion.geometry.plane.region import Region
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
+from trunnion.plan.holes.axis_clearance import AxisClearance
 from trunnion.plan.holes.hole import Countersink, PlannedHole
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.tool_choice import Candidates, depth_reached
@@ -59,11 +61,17 @@ def sink_tip(hole: PlannedHole, sink: Countersink, cone: ToolCone) -> float:
 
 @dataclass(slots=True, kw_only=True)
 class HoleSpace:
-    """What stands around holes in a setup, `clearance` mm over which shank and holder stay; sections are made once a height."""
+    """What stands around holes in a setup, `clearance` mm over which shank and holder stay; sections are made once a height.
+
+    Where a `skin` is given, in the part's coordinates, its triangles answer where nothing of them is near: sections cost a part with
+    many directions of holes most of its planning.
+    """
 
     space: SetupSpace
     clearance: float
+    skin: Skin | None = None
     _free: dict[tuple[float, float, float], float] = field(default_factory=dict)
+    _nearest: tuple[tuple[float, float], AxisClearance] | None = None
 
     def free_radius(self, hole: PlannedHole, z: float) -> float:
         """Return how far the part is from a hole's axis at a height, with all that hangs over it; infinite over the part."""
@@ -76,17 +84,36 @@ class HoleSpace:
             self._free[key] = away
         return self._free[key]
 
+    def is_free(self, hole: PlannedHole, z: float, radius: float) -> bool:
+        """Return whether the part is no nearer to a hole's axis than a radius (mm), at a height and over it."""
+        if (
+            self.skin is not None
+            and self._triangles_near(self.skin, hole).distance_from(z) >= radius
+        ):
+            return True
+        return self.free_radius(hole, z) >= radius
+
+    def _triangles_near(self, skin: Skin, hole: PlannedHole) -> AxisClearance:
+        """Return the triangles near a hole; those of the last hole are kept."""
+        if self._nearest is None or self._nearest[0] != (hole.x, hole.y):
+            bound = max(skin.bound, tolerance.CHORD)
+            frame = self.space.setup.frame
+            self._nearest = (
+                (hole.x, hole.y),
+                AxisClearance.near(skin, bound, frame, hole.position, AROUND),
+            )
+        return self._nearest[1]
+
     def is_open(self, hole: PlannedHole) -> bool:
         """Return whether nothing of the part covers a hole's mouth."""
-        free = self.free_radius(hole, hole.top + tolerance.OFF_PLANE)
-        return free >= hole.radius - tolerance.SEW
+        return self.is_free(hole, hole.top + tolerance.OFF_PLANE, hole.radius - tolerance.SEW)
 
     def has_space(self, hole: PlannedHole, tool: Tool, tip: float, aside: float = 0.0) -> bool:
         """Return whether all above a tool's flutes keeps clear of the part, its tip at a height, its axis up to `aside` mm off the
         hole's."""
         for above, radius in tool.rings()[1:]:
             z = tip + above - self.clearance
-            if self.free_radius(hole, z) < radius + aside + tolerance.HOLDER_CLEARANCE:
+            if not self.is_free(hole, z, radius + aside + tolerance.HOLDER_CLEARANCE):
                 return False
         return True
 
@@ -226,7 +253,7 @@ def sinks_for(
 
 def _rim_is_free(hole: PlannedHole, tool: Tool, around: HoleSpace) -> bool:
     """Return whether the part leaves space for a tool's whole diameter just over a hole's mouth."""
-    return around.free_radius(hole, hole.top + tolerance.OFF_PLANE) >= tool.radius
+    return around.is_free(hole, hole.top + tolerance.OFF_PLANE, tool.radius)
 
 
 def _order_of(hole: PlannedHole) -> Callable[[Tool], tuple[float, float, float, str]]:
