@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import cadquery as cq
 import numpy as np
@@ -58,6 +59,51 @@ def test_the_flow_through_the_samples_is_the_parts_volume(name):
     samples = samples_of(surfaces_of(part, WORLD), 0.25)
     flow = (samples.area[:, None] * samples.normal * samples.point).sum(axis=0)
     assert flow == approx([part.volume] * 3, rel=2e-3)
+
+
+def in_thin_strips(surfaces, count):
+    """Return surfaces whose largest upright plane face comes in many thin strips, as one that is cut by curved edges does."""
+    straight = surfaces.strip[:, strips.PROFILE] == 0.0
+    length = np.hypot(
+        *(
+            surfaces.strip[:, strips.PW1 : strips.PZ1 + 1]
+            - surfaces.strip[:, strips.PW0 : strips.PZ0 + 1]
+        ).T
+    )
+    row = int(np.argmax(np.where(straight & (surfaces.strip[:, strips.GUIDE] == 0.0), length, 0.0)))
+    whole = surfaces.strip[row]
+    shares = np.linspace(0.0, 1.0, count + 1)
+    thin = np.repeat(whole[None], count, axis=0)
+    for first, last in ((strips.U0, strips.U1), (strips.PW0, strips.PW1), (strips.PZ0, strips.PZ1)):
+        at = whole[first] + shares * (whole[last] - whole[first])
+        thin[:, first], thin[:, last] = at[:-1], at[1:]
+    for kind in (strips.L_KIND, strips.R_KIND):
+        assert whole[kind] == 0.0
+        thin[:, kind + 1] += whole[kind + 2] * (thin[:, strips.U0] - whole[strips.U0])
+    face = surfaces.strip_face[row]
+    return face, replace(
+        surfaces,
+        strip=np.vstack([np.delete(surfaces.strip, row, axis=0), thin]),
+        strip_face=np.append(np.delete(surfaces.strip_face, row), np.full(count, face)),
+    )
+
+
+def test_a_face_in_thousands_of_thin_strips_has_no_more_samples_than_its_area_asks_for():
+    """The wall of a casing came in 3.5 million samples where 30,000 do: each strip had a row of them, however thin."""
+    part, spacing = read(block_with_pocket_shape()), 1.0
+    surfaces = surfaces_of(part, WORLD)
+    face, split = in_thin_strips(surfaces, 3000)
+    usual, found = samples_of(surfaces, spacing), samples_of(split, spacing)
+    mine, before = found.face == face, usual.face == face
+    assert mine.sum() < 2.5 * before.sum()
+    assert found.area[mine].sum() == approx(usual.area[before].sum(), rel=1e-9)
+    assert found.area[mine].max() < 4.0 * spacing**2
+    away = np.linalg.norm(usual.point[before][:, None] - found.point[mine][None], axis=2).min(
+        axis=1
+    )
+    assert away.max() < 2.0 * spacing
+    # Other faces have the samples that they had.
+    assert (found.point[~mine] == usual.point[~before]).all()
 
 
 def test_faces_are_exact_strips_in_a_turned_part_and_its_own_frame():

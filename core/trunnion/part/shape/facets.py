@@ -121,17 +121,27 @@ def _face_samples(
     )
     point, share = np.vstack([np.zeros((0, 3)), *parts]), (area / cuts**2)[owner]
     progress.check()
+    first, total = represented(point, share, spacing, progress)
+    return face[owner[first]], point[first], normal[owner[first]], total
+
+
+def represented(
+    point: Floats, area: Floats, spacing: float, progress: Progress = NO_PROGRESS
+) -> tuple[Ints, Floats]:
+    """Return the rows (k,) of the points (s, 3) that represent all in their cell of a grid, and how much area (k,) each stands for.
+
+    The one nearest to the middle of its cell's area represents it.
+    """
     group = grouped(np.floor(point / spacing).astype(np.int64))
     progress.check()
-    total: Floats = np.bincount(group, share).astype(np.float64)
+    total: Floats = np.bincount(group, area).astype(np.float64)
     middle = np.column_stack(
-        [np.bincount(group, share * point[:, k]).astype(np.float64) for k in range(3)]
+        [np.bincount(group, area * point[:, k]).astype(np.float64) for k in range(3)]
     )
     middle = middle / np.maximum(total, tolerance.COINCIDENT**2)[:, None]
     away = np.linalg.norm(point - middle[group], axis=1)
     order = np.lexsort((away, group))
-    first = order[np.flatnonzero(np.diff(group[order], prepend=-1))]
-    return face[owner[first]], point[first], normal[owner[first]], total
+    return order[np.flatnonzero(np.diff(group[order], prepend=-1))], total
 
 
 def grouped(rows: Ints) -> Ints:

@@ -15,7 +15,7 @@ from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
-from trunnion.part.shape.facets import Facets, facet_samples
+from trunnion.part.shape.facets import Facets, facet_samples, represented
 from trunnion.part.shape.surfaces import (
     DX,
     DY,
@@ -35,6 +35,10 @@ from trunnion.part.shape.surfaces import (
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.contact import guide_points
 
+THIN, FEW, DENSE = 0.5, 8, 4.0
+"""Strips thinner than this share of the spacing are thin. Where a face has more than a few of them, and a row of samples along each would
+be so many times what their area asks for, they are crowded: the wall of a casing comes in thousands, cut by the fillets of its bosses."""
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 MOST_SAMPLES = 4_000_000
 """About a quarter of a GB, and some times as much while they are measured: a part of 4 x 4 m at the usual spacing."""
 
@@ -64,21 +68,27 @@ def samples_of(
     `MOST_SAMPLES`.
     """
     strips = np.vstack([surfaces.strip, surfaces.level])
+    strip_face = np.concatenate([surfaces.strip_face, surfaces.level_face])
     progress.at(0.0, "Spreading samples")
-    expected = sum(_expected(strip, spacing) for strip in progress.each(strips))
+    size = np.array([_size(strip) for strip in progress.each(strips)]).reshape(-1, 2)
+    expected = float(size.prod(axis=1).sum()) / spacing**2
     if expected > MOST_SAMPLES:
         raise OutOfMemory(
             f"measuring coverage needs about {expected / 1e6:.0f} million samples at {spacing:g} mm: set a larger "
             "verify.spacing, or split the part"
         )
+    crowded = _crowded(size, strip_face, spacing)
     parts = [
-        _strip_samples(strip, spacing, progress)
-        for strip in progress.over(strips, "Spreading samples")
+        _strip_samples(strip, spacing, progress, n if crowded[n] else None)
+        for n, strip in enumerate(progress.over(strips, "Spreading samples"))
     ]
-    face = np.repeat(
-        np.concatenate([surfaces.strip_face, surfaces.level_face]), [len(p) for p in parts]
-    )
+    owner = np.repeat(np.arange(len(strips)), [len(p) for p in parts])
     rows = np.vstack([np.zeros((0, 7)), *parts])
+    kept = progress.aside(
+        lambda _: _represented(rows, np.where(crowded, strip_face, -1)[owner], spacing),
+        "Spreading samples",
+    )
+    face, rows = strip_face[owner[kept]], rows[kept]
     if facets is None or not len(surfaces.free):
         return Samples(
             face=face.astype(np.int64), point=rows[:, :3], normal=rows[:, 3:6], area=rows[:, 6]
@@ -96,29 +106,55 @@ def samples_of(
     )
 
 
-def _expected(strip: Floats, spacing: float) -> float:
-    """Return about how many samples a strip gets, by its size at the middle of its profile."""
-    u0, u1 = strip[U0], strip[U1]
-    straight = strip[PROFILE] == 0.0
-    length = (
-        np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0])
-        if straight
-        else strip[PW1] * (u1 - u0)
-    )
-    low, high = guide_ends(strip, 0.5 * (u0 + u1))
+def _size(strip: Floats) -> tuple[float, float]:
+    """Return the length of a strip's profile and of its guide at the profile's middle, mm."""
+    low, high = guide_ends(strip, 0.5 * (strip[U0] + strip[U1]))
     wide = max(abs(strip[PW0]), abs(strip[PW1])) if strip[GUIDE] else 1.0
-    return max(float(length * (high - low) * wide), 0.0) / spacing**2
+    return _length(strip), max(float((high - low) * wide), 0.0)
 
 
-def _strip_samples(strip: Floats, spacing: float, progress: Progress) -> Floats:
-    """Return points, normals and areas (k, 7) of one strip: rows across the profile, each as long as the trim is there."""
+def _length(strip: Floats) -> float:
+    """Return the length of a strip's profile, mm."""
+    if strip[PROFILE] == 0.0:
+        return float(np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0]))
+    return float(strip[PW1] * (strip[U1] - strip[U0]))
+
+
+def _crowded(size: Floats, strip_face: Ints, spacing: float) -> Bools:
+    """Return which strips (n,) of sizes (n, 2) are so thin, and so many on their face, that a row of samples along each would be far too
+    many."""
+    thin = size[:, 0] < THIN * spacing
+    crowded = np.zeros(len(size), bool)
+    faces, counts = np.unique(strip_face[thin], return_counts=True)
+    for face in faces[counts > FEW]:
+        mine = thin & (strip_face == face)
+        crowded |= mine & bool(
+            size[mine, 1].sum() * spacing > DENSE * size[mine].prod(axis=1).sum()
+        )
+    return crowded
+
+
+def _represented(rows: Floats, crowded_face: Ints, spacing: float) -> Ints:
+    """Return the rows (k,) of samples (s, 7) that stay: of those on crowded strips of a face, by `crowded_face` (s,), -1 for others, one in
+    each cell of a grid. It is given the area of all that it represents."""
+    stays = crowded_face < 0
+    for face in np.unique(crowded_face[~stays]):
+        mine = np.flatnonzero(crowded_face == face)
+        first, area = represented(rows[mine, :3], rows[mine, 6], spacing)
+        stays[mine[first]], rows[mine[first], 6] = True, area
+    return np.flatnonzero(stays)
+
+
+def _strip_samples(
+    strip: Floats, spacing: float, progress: Progress, crowded: int | None
+) -> Floats:
+    """Return points, normals and areas (k, 7) of one strip: rows across the profile, each as long as the trim is there.
+
+    Of a crowded strip, by its number, they are as many as its area asks for several times over, shifted from strip to strip by the golden
+    ratio: so they are spread evenly however thin strips are.
+    """
     u0, u1 = strip[U0], strip[U1]
-    straight = strip[PROFILE] == 0.0
-    length = (
-        np.hypot(strip[PW1] - strip[PW0], strip[PZ1] - strip[PZ0])
-        if straight
-        else strip[PW1] * (u1 - u0)
-    )
+    straight, length = strip[PROFILE] == 0.0, _length(strip)
     if u1 - u0 <= 0.0 or length < tolerance.PARAMETRIC:
         return np.zeros((0, 7))
     rows = max(1, int(np.ceil(length / spacing)))
@@ -136,8 +172,9 @@ def _strip_samples(strip: Floats, spacing: float, progress: Progress) -> Floats:
         run = (ends[1] - ends[0]) * (abs(w) if strip[GUIDE] else 1.0)
         if run <= tolerance.PARAMETRIC:
             continue
-        count = max(1, int(np.ceil(run / spacing)))
-        shares = (np.arange(count) + 0.5) / count
+        apart = spacing if crowded is None else spacing**2 * rows / (DENSE * length)
+        count = max(1, int(np.ceil(run / max(apart, spacing))))
+        shares = (np.arange(count) + (0.5 + GOLDEN * (crowded or 0)) % 1.0) / count
         points = guide_points(strip, u, shares)
         across = _across(strip, ends[0] + shares * (ends[1] - ends[0]))
         normal = strip[SIDE] * np.column_stack([t[1] * across, np.full(count, -t[0])])
