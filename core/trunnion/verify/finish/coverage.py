@@ -37,7 +37,7 @@ from trunnion.verify.contact import guide_points
 
 THIN, FEW, DENSE = 0.5, 8, 4.0
 """Strips thinner than this share of the spacing are thin. Where a face has more than a few of them, and a row of samples along each would
-be so many times what their area asks for, they are crowded: the wall of a casing comes in thousands, cut by the fillets of its bosses."""
+be so many times what their area asks for, they are dense: the wall of a casing comes in thousands, cut by the fillets of its bosses."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 MOST_SAMPLES = 4_000_000
 """About a quarter of a GB, and some times as much while they are measured: a part of 4 x 4 m at the usual spacing."""
@@ -77,15 +77,15 @@ def samples_of(
             f"measuring coverage needs about {expected / 1e6:.0f} million samples at {spacing:g} mm: set a larger "
             "verify.spacing, or split the part"
         )
-    crowded = _crowded(size, strip_face, spacing)
+    dense = _dense(size, strip_face, spacing)
     parts = [
-        _strip_samples(strip, spacing, progress, n if crowded[n] else None)
+        _strip_samples(strip, spacing, progress, n if dense[n] else None)
         for n, strip in enumerate(progress.over(strips, "Spreading samples"))
     ]
     owner = np.repeat(np.arange(len(strips)), [len(p) for p in parts])
     rows = np.vstack([np.zeros((0, 7)), *parts])
     kept = progress.aside(
-        lambda _: _represented(rows, np.where(crowded, strip_face, -1)[owner], spacing),
+        lambda _: _represented(rows, np.where(dense, strip_face, -1)[owner], spacing),
         "Spreading samples",
     )
     face, rows = strip_face[owner[kept]], rows[kept]
@@ -120,38 +120,34 @@ def _length(strip: Floats) -> float:
     return float(strip[PW1] * (strip[U1] - strip[U0]))
 
 
-def _crowded(size: Floats, strip_face: Ints, spacing: float) -> Bools:
+def _dense(size: Floats, strip_face: Ints, spacing: float) -> Bools:
     """Return which strips (n,) of sizes (n, 2) are so thin, and so many on their face, that a row of samples along each would be far too
     many."""
     thin = size[:, 0] < THIN * spacing
-    crowded = np.zeros(len(size), bool)
+    dense = np.zeros(len(size), bool)
     faces, counts = np.unique(strip_face[thin], return_counts=True)
     for face in faces[counts > FEW]:
         mine = thin & (strip_face == face)
-        crowded |= mine & bool(
-            size[mine, 1].sum() * spacing > DENSE * size[mine].prod(axis=1).sum()
-        )
-    return crowded
+        dense |= mine & bool(size[mine, 1].sum() * spacing > DENSE * size[mine].prod(axis=1).sum())
+    return dense
 
 
-def _represented(rows: Floats, crowded_face: Ints, spacing: float) -> Ints:
-    """Return the rows (k,) of samples (s, 7) that stay: of those on crowded strips of a face, by `crowded_face` (s,), -1 for others, one in
+def _represented(rows: Floats, dense_face: Ints, spacing: float) -> Ints:
+    """Return the rows (k,) of samples (s, 7) that stay: of those on dense strips of a face, by `dense_face` (s,), -1 for others, one in
     each cell of a grid. It is given the area of all that it represents."""
-    stays = crowded_face < 0
-    for face in np.unique(crowded_face[~stays]):
-        mine = np.flatnonzero(crowded_face == face)
+    stays = dense_face < 0
+    for face in np.unique(dense_face[~stays]):
+        mine = np.flatnonzero(dense_face == face)
         first, area = represented(rows[mine, :3], rows[mine, 6], spacing)
         stays[mine[first]], rows[mine[first], 6] = True, area
     return np.flatnonzero(stays)
 
 
-def _strip_samples(
-    strip: Floats, spacing: float, progress: Progress, crowded: int | None
-) -> Floats:
+def _strip_samples(strip: Floats, spacing: float, progress: Progress, number: int | None) -> Floats:
     """Return points, normals and areas (k, 7) of one strip: rows across the profile, each as long as the trim is there.
 
-    Of a crowded strip, by its number, they are as many as its area asks for several times over, shifted from strip to strip by the golden
-    ratio: so they are spread evenly however thin strips are.
+    Of a dense strip, which is given its `number`, they are as many as its area asks for several times over, shifted from strip to strip by
+    the golden ratio: so they are spread evenly however thin strips are.
     """
     u0, u1 = strip[U0], strip[U1]
     straight, length = strip[PROFILE] == 0.0, _length(strip)
@@ -172,9 +168,9 @@ def _strip_samples(
         run = (ends[1] - ends[0]) * (abs(w) if strip[GUIDE] else 1.0)
         if run <= tolerance.PARAMETRIC:
             continue
-        apart = spacing if crowded is None else spacing**2 * rows / (DENSE * length)
+        apart = spacing if number is None else spacing**2 * rows / (DENSE * length)
         count = max(1, int(np.ceil(run / max(apart, spacing))))
-        shares = (np.arange(count) + (0.5 + GOLDEN * (crowded or 0)) % 1.0) / count
+        shares = (np.arange(count) + (0.5 + GOLDEN * (number or 0)) % 1.0) / count
         points = guide_points(strip, u, shares)
         across = _across(strip, ends[0] + shares * (ends[1] - ends[0]))
         normal = strip[SIDE] * np.column_stack([t[1] * across, np.full(count, -t[0])])
