@@ -511,16 +511,18 @@ def _leads(
         arcs[uneven] = (
             tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
         )
-    # A link along both arcs holds where neither arc nor the chord between was lifted by more than the chord error.
-    has_links = (lifts[0][1:].max(axis=1, initial=0.0) <= parameters.chord) & (
-        lifts[1][:-1].max(axis=1, initial=0.0) <= parameters.chord
+    # A link along both arcs holds where neither arc nor the chord between was lifted by more than the chord error, or than a finishing move
+    # may enter what it touches: passes may leave their curves by more than that, to both sides of these.
+    most = min(parameters.chord, tolerance.FINISH_GOUGE)
+    has_links = (lifts[0][1:].max(axis=1, initial=0.0) <= most) & (
+        lifts[1][:-1].max(axis=1, initial=0.0) <= most
     )
     return (
         lead_in,
         lead_out,
         np.asarray(
             has_links
-            & (lifts[2].max(axis=1, initial=0.0) <= parameters.chord)
+            & (lifts[2].max(axis=1, initial=0.0) <= most)
             & upright[1, :-1]
             & upright[0, 1:]
         ),

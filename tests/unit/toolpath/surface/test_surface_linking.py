@@ -10,6 +10,7 @@ import pytest
 from surface_drives import DATA, driven, grid
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.tolerance import FINISH_GOUGE
 from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from verify_tools import bull
@@ -71,6 +72,23 @@ def test_a_link_over_a_ridge_is_lifted_and_one_over_a_dip_is_not_lowered() -> No
         [straight((5, 11, 0), (15, 11, 0)), straight((15, 19, 0), (5, 19, 0))], wide, dip
     )
     assert path.position[path.mark == Mark.LINK][:, 2].min() == pytest.approx(0.0, abs=0.01)
+
+
+def test_no_way_between_leads_enters_the_part_by_what_passes_may_leave_their_curves() -> None:
+    """Sides of a boss at chords of 0.025 mm: from its rim to the next level the tool crossed the boss's top 0.023 mm deep."""
+    plateau = driven(grid(lambda x, y: np.where(np.abs(y - 15.0) < 4.0, 0.03, 0.0), n=60))
+    side = np.array([0.0, -1.0, 0.0])
+    passes = [
+        straight((5, 5, 0), (15, 5, 0), normal=side),
+        straight((15, 25, 0), (5, 25, 0), normal=-side),
+    ]
+    manner = LinkParameters(stepover=20.0, lead_radius=1.0, chord=0.05, arcs=True)
+    path, drive, _ = made(passes, manner, plateau)
+    fed = np.flatnonzero(path.motion[1:] != Motion.RAPID)
+    share = np.linspace(0.0, 1.0, 21)[:, None, None]
+    way = (path.position[fed] + share * (path.position[fed + 1] - path.position[fed])).reshape(-1, 3)
+    floor = drive.skin.drop.drop(way[:, :2], lower_side(BALL), -9.0)
+    assert (floor - way[:, 2]).max() <= FINISH_GOUGE
 
 
 def test_leads_never_come_below_the_dropped_cutter() -> None:
