@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -54,6 +55,35 @@ def test_every_boss_gets_its_top_and_sides_and_the_hole_is_drilled_along_its_axi
     assert sides == tops and len(tops) == 2
     drilled = [o for o in process.operations if o.kind == "drill"]
     assert len(drilled) == 1 and abs(drilled[0].direction[2]) < 1e-6
+
+
+@pytest.mark.parametrize(("hollow", "left"), [(1.0, True), (2.05, False), (30.0, False)])
+def test_sides_with_hollows_that_nothing_goes_into_are_cut_by_one_of_the_smallest(hollow, left):
+    """A random boss of three lobes had hollows of R 2.16: no cutter was nine tenths of that, and the whole program was refused for it."""
+    session = until("casing", "route")
+    bosses = {f.id for f in session.recognition.of_kind("boss")}
+    features = tuple(
+        replace(f, sizes={**f.sizes, "concave_radius": hollow}) if f.id in bosses else f
+        for f in session.recognition.features
+    )
+    process = (
+        own("casing")[0]
+        .run(
+            replace(
+                session, recognition=replace(session.recognition, features=features), process=None
+            ),
+            "route",
+        )
+        .process
+    )
+    sides = [o for o in process.operations if o.strategy == "surface.waterline"]
+    assert {o.feature for o in sides} == bosses
+    told = [f for f in process.findings if "hollows of R" in f.text]
+    assert len(told) == (len(bosses) if left else 0)
+    assert all(f.severity == "warning" for f in told)
+    if hollow < 10.0:
+        assert len({o.cutter.diameter for o in sides}) == 1
+        assert sides[0].cutter.diameter < 5.0
 
 
 def test_passes_on_the_bottom_lie_no_farther_apart_than_its_bend_allows():

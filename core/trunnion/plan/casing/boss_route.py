@@ -184,6 +184,9 @@ def _plan_sides(
     if tool is None:
         state.findings.append(_no_cutter(boss, tags, "goes round its outline"))
         return
+    hollow = _size(boss, "concave_radius") or math.inf
+    if tool.radius > hollow:
+        state.findings.append(_remaining_in_hollows(boss, tags, tool, hollow))
     height = state.settings.scallop
     choices: dict[str, Value] = {
         SCALLOP: height,
@@ -208,7 +211,8 @@ def _plan_sides(
 def _side_cutter(
     state: CasingPlanState, boss: Feature, ground: DevelopedGround, fillet: float
 ) -> Tool | None:
-    """Return the largest cutter that goes all round a boss beside its neighbours; its corner is no rounder than the root fillet."""
+    """Return the largest cutter that goes all round a boss beside its neighbours; its corner is no rounder than the root fillet. Where none
+    is small enough for the hollows of its outline it is one of the smallest that go down: these leave least."""
     high = max(_size(boss, "height"), 1.0) + state.route.reach_clearance
     hollow = _size(boss, "concave_radius") or math.inf
     fits = [
@@ -216,10 +220,11 @@ def _side_cutter(
         for t in state.cutters("finish")
         if t.form in ("flat", "bull")
         and t.diameter <= LARGEST_SIDE
-        and t.radius <= CONCAVE * hollow
         and t.corner_radius <= fillet
         and depth_reached(t) >= high
     ]
+    smallest = min((t.radius for t in fits), default=0.0)
+    fits = [t for t in fits if t.radius <= max(CONCAVE * hollow, smallest)]
     fits.sort(key=lambda t: (-t.diameter, -t.corner_radius, depth_reached(t), t.name))
     over = ground.over(SKIM).split()
     at = ground.development.to_local(state.part.graph().centre[boss.with_role(TOP)[0] - 1])[:2]
@@ -302,6 +307,19 @@ def _plan_fillet(state: CasingPlanState, stage: Stage, boss: Feature) -> None:
 def _size(boss: Feature, name: str) -> float:
     value = boss.sizes.get(name, 0.0)
     return float(value) if isinstance(value, (int, float)) else 0.0
+
+
+def _remaining_in_hollows(
+    boss: Feature, tags: tuple[int, ...], tool: Tool, hollow: float
+) -> Finding:
+    return warning(
+        "route.no-cutter",
+        f"{boss.id}: no cutter of the catalogue goes into hollows of R {trimmed(hollow, 2)} of its outline; {tool.name} leaves what "
+        "is there",
+        boss.id,
+        *face_tags(tags),
+        remedy="add a smaller or longer cutter to the tools folder",
+    )
 
 
 def _not_planned(boss: Feature) -> Finding:

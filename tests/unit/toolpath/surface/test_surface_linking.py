@@ -86,7 +86,9 @@ def test_no_way_between_leads_enters_the_part_by_what_passes_may_leave_their_cur
     path, drive, _ = made(passes, manner, plateau)
     fed = np.flatnonzero(path.motion[1:] != Motion.RAPID)
     share = np.linspace(0.0, 1.0, 21)[:, None, None]
-    way = (path.position[fed] + share * (path.position[fed + 1] - path.position[fed])).reshape(-1, 3)
+    way = (path.position[fed] + share * (path.position[fed + 1] - path.position[fed])).reshape(
+        -1, 3
+    )
     floor = drive.skin.drop.drop(way[:, :2], lower_side(BALL), -9.0)
     assert (floor - way[:, 2]).max() <= FINISH_GOUGE
 
