@@ -424,18 +424,20 @@ def _links(
     if not any(upright):
         return chords
     lowest = float(drive.low[2]) - tool.flute_length
+    # Twice the error goes in, once by following and once by thinning: together no more than a finishing move may enter what it touches.
+    error = min(parameters.chord, 0.5 * tolerance.FINISH_GOUGE)
     over = iter(
         follow(
             drive.skin.drop,
             lower_side(tool, drive.allowance),
             [c[:, :2] for c, up in zip(chords, upright) if up],
-            parameters.chord,
+            error,
             lowest,
             progress,
         )
     )
     return [
-        _bridged(next(over), chord, drive.allowance, parameters.chord) if up else chord
+        _bridged(next(over), chord, drive.allowance, error) if up else chord
         for chord, up in zip(chords, upright)
     ]
 

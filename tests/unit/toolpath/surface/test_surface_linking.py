@@ -74,7 +74,8 @@ def test_a_link_over_a_ridge_is_lifted_and_one_over_a_dip_is_not_lowered() -> No
     assert path.position[path.mark == Mark.LINK][:, 2].min() == pytest.approx(0.0, abs=0.01)
 
 
-def test_no_way_between_leads_enters_the_part_by_what_passes_may_leave_their_curves() -> None:
+@pytest.mark.parametrize("arcs", [True, False])
+def test_no_way_between_passes_enters_the_part_by_what_these_may_leave_their_curves(arcs) -> None:
     """Sides of a boss at chords of 0.025 mm: from its rim to the next level the tool crossed the boss's top 0.023 mm deep."""
     plateau = driven(grid(lambda x, y: np.where(np.abs(y - 15.0) < 4.0, 0.03, 0.0), n=60))
     side = np.array([0.0, -1.0, 0.0])
@@ -82,7 +83,7 @@ def test_no_way_between_leads_enters_the_part_by_what_passes_may_leave_their_cur
         straight((5, 5, 0), (15, 5, 0), normal=side),
         straight((15, 25, 0), (5, 25, 0), normal=-side),
     ]
-    manner = LinkParameters(stepover=20.0, lead_radius=1.0, chord=0.05, arcs=True)
+    manner = LinkParameters(stepover=20.0, lead_radius=1.0, chord=0.05, arcs=arcs)
     path, drive, _ = made(passes, manner, plateau)
     fed = np.flatnonzero(path.motion[1:] != Motion.RAPID)
     share = np.linspace(0.0, 1.0, 21)[:, None, None]
