@@ -76,7 +76,7 @@ def test_a_link_over_a_ridge_is_lifted_and_one_over_a_dip_is_not_lowered() -> No
 
 @pytest.mark.parametrize("arcs", [True, False])
 def test_no_way_between_passes_enters_the_part_by_what_these_may_leave_their_curves(arcs) -> None:
-    """Sides of a boss at chords of 0.025 mm: from its rim to the next level the tool crossed the boss's top 0.023 mm deep."""
+    """Passes at a coarse scallop have chords of more than the limit of gouges."""
     plateau = driven(grid(lambda x, y: np.where(np.abs(y - 15.0) < 4.0, 0.03, 0.0), n=60))
     side = np.array([0.0, -1.0, 0.0])
     passes = [
