@@ -92,6 +92,8 @@ def linked(
     )
     if parameters.arcs:
         near &= has_links
+        chords = [np.array([leads_out[k, -1], leads_in[k + 1, 0]]) for k in np.flatnonzero(near)]
+        near[near] = _is_over(chords, drive, tool, parameters, progress.part(0.4, 0.8))
         links = iter(
             [
                 np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]])
@@ -444,15 +446,40 @@ def _links(
 
 def _bridged(points: Floats, chord: Floats, allowance: float, error: float) -> Floats:
     """Return a path over the surface (k, 3), the height of the chord (2, 3) between its ends where that is higher."""
-    run = np.hypot(*(points[:, :2] - chord[0, :2]).T)
-    share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(points))
     lifted = np.column_stack(
-        [
-            points[:, :2],
-            np.maximum(points[:, 2] + allowance, chord[0, 2] + share * (chord[1, 2] - chord[0, 2])),
-        ]
+        [points[:, :2], np.maximum(points[:, 2] + allowance, _on_chord(points, chord))]
     )
     return lifted[thinned(lifted, np.zeros(len(lifted), np.int64), error)]
+
+
+def _is_over(
+    chords: Sequence[Floats],
+    drive: SurfaceDrive,
+    tool: Tool,
+    parameters: LinkParameters,
+    progress: Progress,
+) -> Bools:
+    """Return whether an upright tool on each straight link (2, 3) stays over the surface, whole: between a few positions of a long one
+    that rises there is space for the rim of what it goes over."""
+    most = min(parameters.chord, tolerance.FINISH_GOUGE)
+    lowest = float(drive.low[2]) - tool.flute_length
+    lower, error = lower_side(tool, drive.allowance), 0.5 * most
+    plan = [c[:, :2] for c in chords]
+    over = follow(drive.skin.drop, lower, plan, error, lowest, progress)
+    return np.array(
+        [
+            bool((p[:, 2] + drive.allowance - _on_chord(p, c)).max() <= most - error)
+            for p, c in zip(over, chords, strict=True)
+        ],
+        dtype=bool,
+    )
+
+
+def _on_chord(points: Floats, chord: Floats) -> Floats:
+    """Return the heights (k,) of a chord (2, 3) at points (k, 3) over it."""
+    run = np.hypot(*(points[:, :2] - chord[0, :2]).T)
+    share = run / run[-1] if run[-1] > 0.0 else np.linspace(0.0, 1.0, len(points))
+    return np.asarray(chord[0, 2] + share * (chord[1, 2] - chord[0, 2]))
 
 
 def _leads(
@@ -463,7 +490,8 @@ def _leads(
     progress: Progress,
 ) -> tuple[Floats, Floats, Bools]:
     """Return the links (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
-    would gouge. Also return for each pass but the last whether the path off it and onto the next one needs no lifting (m - 1,)."""
+    would gouge. Also return for each pass but the last whether the path off it and onto the next one needs no lifting (m - 1,), as far as
+    `BETWEEN` positions tell."""
     lead_in = _arcs(
         np.array([p.tip[0] for p in passes]),
         np.array([_off(p.tip, p.axis[0]) for p in passes]),

@@ -94,6 +94,25 @@ def test_no_way_between_passes_enters_the_part_by_what_these_may_leave_their_cur
     assert (floor - way[:, 2]).max() <= FINISH_GOUGE
 
 
+def test_a_rising_link_between_leads_does_not_cut_the_rim_of_what_it_goes_over() -> None:
+    """The rim lies between two of the positions that leads are tested at; the chord is over what it goes to by then."""
+    rim = driven(grid(lambda x, y: np.where(y > 13.2, 1.0, -3.0), n=60))
+    out, back = np.array([0.0, -1.0, 0.0]), np.array([0.0, 1.0, 0.0])
+    passes = [
+        straight((5, 6, -0.8), (15, 6, -0.8), normal=back),
+        straight((15, 26, 4.0), (5, 26, 4.0), normal=out),
+    ]
+    manner = LinkParameters(stepover=20.0, lead_radius=1.0, arcs=True)
+    path, drive, _ = made(passes, manner, rim)
+    fed = np.flatnonzero(path.motion[1:] != Motion.RAPID)
+    share = np.linspace(0.0, 1.0, 200)[:, None, None]
+    way = (path.position[fed] + share * (path.position[fed + 1] - path.position[fed])).reshape(
+        -1, 3
+    )
+    floor = drive.skin.drop.drop(way[:, :2], lower_side(BALL), -9.0)
+    assert (floor - way[:, 2]).max() <= FINISH_GOUGE
+
+
 def test_leads_never_come_below_the_dropped_cutter() -> None:
     drive = driven(grid(lambda x, y: 0.05 * (x - 15.0) ** 2))
     x = np.linspace(8.0, 22.0, 40)
