@@ -74,6 +74,20 @@ def test_an_arc_becomes_chords_of_its_circle() -> None:
     assert flat[:, 1].max() == pytest.approx(10.0, abs=1e-3)
 
 
+def test_a_flat_arc_wider_than_a_cone_is_long_keeps_to_its_chord_error() -> None:
+    """An arc with its centre beyond the cone's tip was taken for one at no radius, and went in one block (0.5 mm off)."""
+    cone = Development(frame=WORLD, radius=200.0, height=0.0, slope=0.1, middle=0.0)
+    arm, sweep = 4000.0, 0.02
+    end = (-arm * np.sin(sweep), arm * np.cos(sweep) - arm)
+    path = flat_path(
+        [(0.0, 0.0, 0.0, Motion.RAPID), (*end, 0.0, Motion.ARC_CCW)],
+        [[np.nan] * 3, [0.0, -arm, 0.0]],
+    )
+    tips = rolled(path, cone, WORLD, 0.05).position
+    middle = cone.to_local(0.5 * (tips[1:] + tips[:-1]))
+    assert len(tips) > 3 and middle[:, 2].min() >= -0.05 - 1e-9
+
+
 def test_what_was_rolled_is_laid_flat_again() -> None:
     path = rolled(ROUND, GROUND, WORLD, 0.002)
     back = laid_flat(path, GROUND, WORLD)

@@ -71,10 +71,13 @@ def _pieces(path: Toolpath, start: Floats, development: Development, chord: floa
     arm[arcs] = np.linalg.norm(start[arcs, :2] - path.centre[arcs, :2], axis=1)
     step = 2.0 * np.arccos(np.clip(1.0 - chord / np.maximum(arm, chord), -1.0, 1.0))
     count = np.where(arcs, np.maximum(np.ceil(sweep / step), 1), 1).astype(np.int64)
-    ground = development.radius_at(np.minimum(path.position[:, 1], start[:, 1]) - arm)
+    # An arc leaves the chord between its ends by r (1 - cos(t / 2)): where it may go on a cone the ground is no narrower than there.
+    off = np.where(arcs, arm * (1.0 - np.cos(0.5 * np.minimum(sweep, 2.0 * math.pi))), 0.0)
     ground = np.minimum(
-        ground, development.radius_at(np.maximum(path.position[:, 1], start[:, 1]) + arm)
+        development.radius_at(np.minimum(path.position[:, 1], start[:, 1]) - off),
+        development.radius_at(np.maximum(path.position[:, 1], start[:, 1]) + off),
     )
+    ground = np.maximum(ground, chord)
     wide = np.where(
         arcs,
         sweep * arm / ground,
