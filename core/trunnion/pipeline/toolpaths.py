@@ -177,6 +177,8 @@ def _make_one(
             progress.part(1.0, 1.0),
         )
         scene.last, scene.tool = kept, cutter
+    if len(kept.path):
+        scene.laid.append((cutter, kept))
     return kept
 
 

@@ -21,10 +21,11 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.fixture import Fixture
-from trunnion.model.operation import Operation
+from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene, RemainingStockQuery
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.fixtures import PlanFixture, off_fixtures
@@ -107,7 +108,7 @@ class DriveNeeds:
 
 
 class Scene(Protocol):
-    """What the operations of one setup are made in."""
+    """What the operations of one setup are made in; `laid` are the cutters and toolpaths, in the setup's frame, of those before."""
 
     context: PartContext
     recognition: Recognition
@@ -115,6 +116,7 @@ class Scene(Protocol):
     setup: Setup
     process: ProcessTree
     fixtures: tuple[Fixture, ...]
+    laid: list[tuple[Tool, OperationPath]]
 
     def stock(self, setup: Setup) -> StockHeights:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""

@@ -145,4 +145,4 @@ def test_where_walls_leave_no_room_there_is_no_line():
     channel = wheels.channel()
     u = np.linspace(0.0, 1.0, 21)
     low, high = between_walls(channel, u, np.zeros_like(u), 50.0)
-    assert lines_between(level_of(channel, lambda x: 0.0 * x), u, low, high, 1.0) == []
+    assert lines_between(level_of(channel, lambda x: 0.0 * x, 1.0, 0.0), u, low, high, 1.0) == []

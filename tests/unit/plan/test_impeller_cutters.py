@@ -8,7 +8,14 @@ import pytest
 from trunnion.findings import Refused
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Recognition
-from trunnion.plan.impeller.cutters import WheelSizes, in_fillet, on_hub, on_walls, through_channel
+from trunnion.plan.impeller.cutters import (
+    WheelSizes,
+    in_fillet,
+    in_wide_parts,
+    on_hub,
+    on_walls,
+    through_channel,
+)
 from trunnion.plan.impeller.wheel import wheel_of
 from trunnion.shop import load_shop
 
@@ -43,6 +50,22 @@ def test_the_ball_on_walls_comes_down_to_the_rims_of_the_fillets():
 
 def test_without_fillets_the_channel_alone_bounds_the_cutter():
     assert in_fillet(TOOLS, sizes(fillet=0.0, channel=8.1)).diameter == 8.0
+
+
+def test_a_wide_cutter_goes_first_where_it_saves_a_quarter_of_the_time():
+    def removal(tool):
+        return tool.diameter**2
+
+    narrow = through_channel(TOOLS, sizes(), 0.3)
+    widths = np.array([[4.5, 0.1], [6.0, 0.2], [9.0, 0.4], [12.0, 0.3]])
+    some = WheelSizes(channel=4.5, fillet=1.5, height=11.6, widths=widths)
+    assert some.share_of(9.0) == pytest.approx(0.7)
+    tool = in_wide_parts(TOOLS, some, 0.3, narrow, removal)
+    # D5 fits into 0.9 of it and leaves 0.9 * 9 / 25 + 0.1 of the time, D8 into 0.7: 0.7 * 9 / 64 + 0.3, D10 into 0.3.
+    assert tool.diameter == 8.0
+    even = WheelSizes(channel=4.5, fillet=1.5, height=11.6, widths=np.array([[4.5, 1.0]]))
+    assert in_wide_parts(TOOLS, even, 0.3, narrow, removal) is None
+    assert in_wide_parts(TOOLS, some, 0.3, narrow, lambda tool: 1.0) is None
 
 
 def test_where_no_cutter_fits_there_is_none():

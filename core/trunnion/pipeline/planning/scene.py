@@ -66,7 +66,8 @@ class SessionContext:
 
 @dataclass(slots=True, kw_only=True)
 class SetupScene:
-    """What the operations of one setup are made in: the part, the stock that is left, and the last path with its tool.
+    """What the operations of one setup are made in: the part, the stock that is left, and the last path with its tool. `laid` are the
+    cutters and toolpaths, in the setup's frame, of all operations that cut before.
 
     `handed_on` is the stock that the setups before have left; without it the blank is uncut. The setup is held by its fixtures
     (`plan.setups.held`).
@@ -82,6 +83,7 @@ class SetupScene:
     sides: StockViews = field(init=False)
     last: OperationPath | None = None
     tool: Tool | None = None
+    laid: list[tuple[Tool, OperationPath]] = field(default_factory=list)
     _made: dict[Hashable, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

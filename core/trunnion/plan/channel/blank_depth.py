@@ -60,5 +60,8 @@ class BlankDepth:
             inside = cylindrical(points[rows])[0]
             edge = self.table.grid[0][-1]
             near = inside[:, 0] < edge
+            # Beyond the table, in the corners of the box: a round blank is nowhere wider than its box.
+            widest = float(np.abs([*self.low[:2], *self.high[:2]]).max())
+            deep[rows[~near]] = np.minimum(deep[rows[~near]], widest - inside[~near, 0])
             deep[rows[near]] = self.table(inside[near]) + CELL / math.sqrt(2.0)
         return np.asarray(deep)

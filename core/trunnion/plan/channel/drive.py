@@ -15,6 +15,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.blank import Blank
 from trunnion.model.tool import Tool
 from trunnion.plan.channel.blade_channel import BladeChannel
+from trunnion.plan.channel.cut_space import CutSpace
 from trunnion.plan.channel.meridian import cylindrical
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -29,7 +30,7 @@ class ChannelDrive:
     bring the period to all of its places, the first one 0. `tips` and `roots` are tags of faces beyond the rims of `faces`, towards the
     shroud and towards the hub, where passes begin and end. `inward` says how deep below the blank's surface points (k, 3) lie, negative
     outside. `blank` is the blank itself; `holds` says which tool axes (k, 3) the machine can hold, `fixed` whether fixtures stand there,
-    `sharp` whether blades meet the hub without root fillets.
+    `sharp` whether blades meet the hub without root fillets. `cut` is what the operations before have cut, where this one roughs.
     """
 
     surface: SurfaceDrive
@@ -43,6 +44,7 @@ class ChannelDrive:
     sharp: bool = False
     tips: tuple[int, ...] = ()
     roots: tuple[int, ...] = ()
+    cut: tuple[CutSpace, ...] = ()
 
     @property
     def is_empty(self) -> bool:

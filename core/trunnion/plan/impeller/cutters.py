@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
@@ -23,35 +25,45 @@ ROUND = 0.01
 """mm by which a cutter may be rounder than a fillet: what fillets are modelled to."""
 SHORT, SHARPEST = 0.05, 0.98
 """mm: shorter sides of triangles say nothing of a bend; and the share of bends that are no sharper than the fillet's."""
+WORTHWHILE = 0.75
+"""Of the time to rough with one cutter: a second one that does not get below it is not worth its change and its entries."""
 NEAREST = 12
 """Places on the other wall that are looked at for one that faces."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WheelSizes:
-    """What bounds the cutters, mm: the narrowest `channel`, the smallest root `fillet` (0: none), the largest `height` of blades."""
+    """What bounds the cutters, mm: the narrowest `channel`, the smallest root `fillet` (0: none), the largest `height` of blades. `widths`
+    (k, 2): how wide channels are at places of the walls, and the share of the walls that each place stands for."""
 
     channel: float
     fillet: float
     height: float
+    widths: Floats = field(default_factory=lambda: np.zeros((0, 2)))
+
+    def share_of(self, width: float) -> float:
+        """Return the share of the channels that is at least so many mm wide."""
+        return float(self.widths[self.widths[:, 0] >= width, 1].sum())
 
 
 def sizes_of(wheel: Wheel, skin: Skin) -> WheelSizes:
     """Return the sizes of a wheel, from a skin in the rotor's frame."""
+    pairs = zip(
+        wheel.blades[: wheel.period],
+        (*wheel.blades[1 : wheel.period], wheel.blades[wheel.period % len(wheel.blades)]),
+        strict=True,
+    )
+    widths = np.vstack([_between(skin, a, b) for a, b in pairs])
+    if len(widths):
+        widths[:, 1] /= widths[:, 1].sum()
     return WheelSizes(
-        channel=min(
-            _between(skin, a, b)
-            for a, b in zip(
-                wheel.blades[: wheel.period],
-                (*wheel.blades[1 : wheel.period], wheel.blades[wheel.period % len(wheel.blades)]),
-                strict=True,
-            )
-        ),
+        channel=float(widths[:, 0].min(initial=np.inf)),
         fillet=min(
             (_roundness(skin, f.with_role(*ROOT)) for f in wheel.blades[: wheel.period]),
             default=0.0,
         ),
         height=float(wheel.meridian.height(np.linspace(0.0, 1.0, 33)).max()),
+        widths=widths,
     )
 
 
@@ -73,23 +85,56 @@ def _roundness(skin: Skin, tags: tuple[int, ...]) -> float:
     return 1.0 / sharpest if sharpest > 0.0 else 0.0
 
 
-def _between(skin: Skin, first: Feature, second: Feature) -> float:
-    """Return the least distance in mm of places on two blades' walls that face each other."""
+def _between(skin: Skin, first: Feature, second: Feature) -> Floats:
+    """Return rows (k, 2) of how far in mm places of a blade's walls are from what faces them on the other blade, and the mm2 that each of
+    them stands for."""
     sides = []
     for f in (first, second):
-        rows = np.unique(skin.triangles[skin.of(f.with_role(*WALLS))])
-        sides.append((skin.points[rows], skin.normals[rows]))
-    (point, normal), (other, facing) = sides
+        triangles = skin.triangles[skin.of(f.with_role(*WALLS))]
+        corners = skin.points[triangles]
+        area = np.linalg.norm(
+            np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+        )
+        # A third of half the product of its sides goes to each corner of a triangle.
+        whole = np.bincount(triangles.ravel(), np.repeat(area / 6.0, 3), len(skin.points))
+        rows = np.unique(triangles)
+        sides.append((skin.points[rows], skin.normals[rows], whole[rows]))
+    (point, normal, area), (other, facing, _) = sides
     away, near = cKDTree(other).query(point, k=min(NEAREST, len(other)))
     away, near = (np.asarray(a).reshape(len(point), -1) for a in (away, near))
     faces = (normal[:, None] * facing[near]).sum(axis=2) < FACING
-    return float(np.where(faces, away, np.inf).min(initial=np.inf))
+    width = np.where(faces, away, np.inf).min(axis=1, initial=np.inf)
+    known = np.isfinite(width)
+    return np.column_stack([width[known], area[known]])
 
 
 def through_channel(tools: Sequence[Tool], sizes: WheelSizes, allowance: float) -> Tool | None:
     """Return the largest tapered ball that goes through the narrowest place with an allowance on both sides, with flutes as long as the
     blades are high; of equal ones the shortest."""
     return _largest(tools, min(sizes.channel - 2.0 * allowance, np.inf), sizes.height + OVER)
+
+
+def in_wide_parts(
+    tools: Sequence[Tool],
+    sizes: WheelSizes,
+    allowance: float,
+    narrow: Tool,
+    removal: Callable[[Tool], float],
+) -> Tool | None:
+    """Return the tapered ball that saves most when it goes first wherever it fits, before a `narrow` one; None where none saves a quarter.
+
+    `removal` says what a cutter takes off in a minute. A wide one takes the share s of the channels at its own rate, the narrow one the
+    rest: s r(narrow) / r(wide) + 1 - s of the narrow one's time alone.
+    """
+    best, least = None, WORTHWHILE
+    for tool in sorted(tools, key=lambda t: (t.stickout, t.name)):
+        if not _is_deep_ball(tool, sizes.height + OVER) or tool.diameter <= narrow.diameter:
+            continue
+        share = sizes.share_of(tool.diameter + 2.0 * allowance)
+        time = share * removal(narrow) / removal(tool) + 1.0 - share
+        if time < least - tolerance.PARAMETRIC:
+            best, least = tool, time
+    return best
 
 
 def on_walls(tools: Sequence[Tool], sizes: WheelSizes, allowance: float) -> Tool | None:
@@ -118,12 +163,10 @@ def on_hub(tools: Sequence[Tool], sizes: WheelSizes) -> Tool | None:
 
 
 def _largest(tools: Sequence[Tool], widest: float, deep: float) -> Tool | None:
-    fits = [
-        t
-        for t in tools
-        if t.form == "taper"
-        and t.corner_radius == t.radius
-        and t.diameter <= widest
-        and t.flute_length >= deep
-    ]
+    fits = [t for t in tools if t.diameter <= widest and _is_deep_ball(t, deep)]
     return max(fits, key=lambda t: (t.diameter, -t.stickout, t.name), default=None)
+
+
+def _is_deep_ball(tool: Tool, deep: float) -> bool:
+    """Return whether a cutter is a tapered ball with flutes of so many mm at least."""
+    return tool.form == "taper" and tool.corner_radius == tool.radius and tool.flute_length >= deep

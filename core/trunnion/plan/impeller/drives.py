@@ -9,10 +9,12 @@ from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
-from trunnion.model.operation import Operation
+from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.setup import Setup
+from trunnion.model.tool import Tool
 from trunnion.part.shape.exact import ExactFace
 from trunnion.plan.channel.blank_depth import BlankDepth
+from trunnion.plan.channel.cut_space import CutSpace
 from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -56,6 +58,7 @@ def channel_driven(
     faces, tips, roots, named = _first_faces(operation, wheel, scene.recognition)
     low, high = scene.blank.box_in(rotor)
     blank = scene.blank
+    before = _balls(scene) if named and not operation.faces else ()
     identity = digest(
         scene.context.part.digest,
         scene.context.part.solid,
@@ -68,6 +71,7 @@ def channel_driven(
         number(operation, SCALLOP),
         number(operation, ALLOWANCE),
         scene.recognition.features,
+        [laid.key for _, laid in before],
     )
     progress.check()
     surface = SurfaceDrive(
@@ -98,8 +102,20 @@ def channel_driven(
         fixed=bool(setup.fixtures or scene.fixtures),
         tips=tips,
         roots=roots,
+        cut=tuple(
+            CutSpace.of(laid.path, tool).moved(scene.setup.frame, rotor) for tool, laid in before
+        ),
     )
     return OperationDrive(setup=setup, drive=drive, identity=(identity, scene.fixtures))
+
+
+def _balls(scene: Scene) -> tuple[tuple[Tool, OperationPath], ...]:
+    """Return the balls and tapered balls that have cut before, with their toolpaths."""
+    return tuple(
+        (tool, laid)
+        for tool, laid in scene.laid
+        if tool.form in ("ball", "taper") and tool.corner_radius == tool.radius
+    )
 
 
 def _first_faces(

@@ -10,7 +10,7 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.material import Machine, Material
-from trunnion.model.operation import Operation
+from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -25,6 +25,7 @@ from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
 from trunnion.plan.impeller.cutters import (
     WheelSizes,
     in_fillet,
+    in_wide_parts,
     on_hub,
     on_walls,
     sizes_of,
@@ -39,11 +40,13 @@ from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage, TypicalPlan
 from trunnion.units import trimmed
 
-CHANNEL, WALL, HUB_CUTTER, FILLET = "channel", "walls", "hub", "fillet"
-CUTTER_RULES = (CHANNEL, WALL, HUB_CUTTER, FILLET)
+WIDE, CHANNEL, WALL, HUB_CUTTER, FILLET = "wide", "channel", "walls", "hub", "fillet"
+CUTTER_RULES = (WIDE, CHANNEL, WALL, HUB_CUTTER, FILLET)
 """Words that a typical plan may give for a stage's cutter."""
 ROLES = {WALL: (*WALLS, *EDGES), FILLET: ROOT}
 """Roles of the faces that a stage finishes, by its rule for the cutter."""
+ROUGH = "rough"
+"""Kind of the operations that rough channels."""
 WIDTH = 0.5
 """Of the cutter's diameter: how far apart the passes of a layer lie. The first of them is a full slot anyhow."""
 LEFT = 2.0
@@ -69,14 +72,34 @@ class ImpellerPlanState:
         """Return the cutter of a stage by its rule, the one that a person named before all others."""
         s = self.settings
         tools = self.shop.tools_for(self.material.iso_group, "surface")
-        wanted = {CHANNEL: s.rough_cutter, WALL: s.finish_cutter}.get(rule, s.fillet_cutter)
+        wanted = {WIDE: s.wide_cutter, CHANNEL: s.rough_cutter, WALL: s.finish_cutter}.get(
+            rule, s.fillet_cutter
+        )
         if wanted:
             return named(self.shop, wanted)
+        if rule == WIDE:
+            narrow = self.cutter(CHANNEL)
+            return narrow and in_wide_parts(
+                tools,
+                self.sizes,
+                s.rough_allowance,
+                narrow,
+                lambda tool: self.rough_data(tool).removal_rate,
+            )
         if rule == CHANNEL:
             return through_channel(tools, self.sizes, s.rough_allowance)
         if rule == WALL:
             return on_walls(tools, self.sizes, s.rough_allowance)
         return on_hub(tools, self.sizes) if rule == HUB_CUTTER else in_fillet(tools, self.sizes)
+
+    def rough_data(self, tool: Tool) -> CuttingData:
+        """Return the cutting data of a cutter that roughs channels."""
+        s, cutting = self.settings, choose(CuttingSettings, {})
+        bears = roughing_depth(tool, self.material, cutting)
+        depth = min(bears, s.layer) if s.layer > 0.0 else bears
+        return cutting_data(
+            tool, self.material, self.machine, ROUGH, cutting, depth, WIDTH * tool.diameter
+        )
 
 
 def make_impeller_route(
@@ -115,7 +138,11 @@ def make_impeller_route(
 
 
 def _plan_stage(state: ImpellerPlanState, stage: Stage) -> None:
+    if stage.cutter == WIDE and not state.settings.wide_first:
+        return
     tool = state.cutter(stage.cutter)
+    if tool is None and stage.cutter == WIDE:
+        return
     if tool is None:
         state.findings.append(_no_cutter(state, stage))
         return
@@ -127,7 +154,8 @@ def _plan_stage(state: ImpellerPlanState, stage: Stage) -> None:
                 _add(state, stage, f"{stage.name}-{kind}", features[0].id, tool, tags)
         return
     for f in state.recognition.of_kind(*stage.on)[:1]:
-        _add(state, stage, f.id, f.id, tool, f.tags if stage.finish else ())
+        name = f"{f.id}-{WIDE}" if stage.cutter == WIDE else f.id
+        _add(state, stage, name, f.id, tool, f.tags if stage.finish else ())
 
 
 def _add(
@@ -139,21 +167,26 @@ def _add(
     tags: tuple[int, ...],
 ) -> None:
     s, cutting = state.settings, choose(CuttingSettings, {})
-    height = s.height()
+    choices: dict[str, Value]
     if stage.finish:
+        height = s.height()
         depth = LEFT * s.rough_allowance
         width = stepover_on_plane(tool.corner_radius, height)
-        choices: dict[str, Value] = {SCALLOP: height, ALLOWANCE: 0.0}
+        data = cutting_data(tool, state.material, state.machine, stage.kind, cutting, depth, width)
+        choices = {SCALLOP: height, ALLOWANCE: 0.0}
         why = f"{tool.name}: scallops of {trimmed(1000.0 * height, 1)} um, {trimmed(width, 3)} mm between passes on a plane."
     else:
-        bears = roughing_depth(tool, state.material, cutting)
-        depth = min(bears, s.layer) if s.layer > 0.0 else bears
-        width = WIDTH * tool.diameter
+        data = state.rough_data(tool)
         choices = {ALLOWANCE: s.rough_allowance}
+        if stage.cutter == WIDE:
+            share = state.sizes.share_of(tool.diameter + 2.0 * s.rough_allowance)
+            choices["channel.rough.wide"] = True
+            goes = f"fits into {trimmed(100.0 * share, 0)} % of the channels"
+        else:
+            goes = f"the narrowest channel is {trimmed(state.sizes.channel, 2)} mm wide"
         why = (
-            f"{tool.name}: the narrowest channel is {trimmed(state.sizes.channel, 2)} mm wide, "
-            f"blades are {trimmed(state.sizes.height, 1)} mm high; "
-            f"layers of {trimmed(depth, 2)} mm, {trimmed(s.rough_allowance, 2)} mm are left."
+            f"{tool.name}: {goes}, blades are {trimmed(state.sizes.height, 1)} mm high; "
+            f"layers of {trimmed(data.depth, 2)} mm, {trimmed(s.rough_allowance, 2)} mm are left."
         )
     copies = len(state.wheel.copies)
     rules = (
@@ -161,7 +194,6 @@ def _add(
         why,
         f"One period of the wheel is programmed and turned to {copies} places.",
     )
-    data = cutting_data(tool, state.material, state.machine, stage.kind, cutting, depth, width)
     state.operations.append(
         Operation(
             id=f"{stage.kind}-{name}".replace(" ", "-"),

@@ -48,6 +48,18 @@ class ImpellerRouteSettings:
         catalogue="tools",
         help="Name of the cutter that roughs the channels; empty: the largest tapered ball that goes through the narrowest place.",
     )
+    wide_first: bool = setting(
+        True,
+        label="Wide parts first",
+        help="Rough with a larger cutter wherever it fits, before the one that goes through the narrowest place, if that saves a "
+        "quarter of the time.",
+    )
+    wide_cutter: str = setting(
+        "",
+        label="Cutter of wide parts",
+        catalogue="tools",
+        help="Name of the cutter that roughs the wide parts of the channels first; empty: the one that saves most.",
+    )
     finish_cutter: str = setting(
         "",
         label="Finishing cutter",

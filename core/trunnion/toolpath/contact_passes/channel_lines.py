@@ -19,6 +19,8 @@ SHORT = 3
 """Contacts that a line has at least."""
 STEP = 0.05
 """Share of the way from hub to shroud over which a wall's lean is taken."""
+LEAST_UPRIGHT = 0.3
+"""Cosine of the largest lean of a ruling that levels are raised for."""
 LATE = 0.05
 """Share of the stream from which on a blade that begins so far behind the others is a splitter."""
 CLEARANCE, TOE_CLEARANCE = 0.05, 0.03
@@ -64,12 +66,21 @@ def hub_of(channel: BladeChannel) -> Surface:
     return channel.hub
 
 
-def level_of(channel: BladeChannel, height: Callable[[Floats], Floats]) -> Surface:
-    """Return a level of a channel, as high over the hub as `height` says in mm at u (k,); its normals are the rulings."""
+def level_of(
+    channel: BladeChannel, height: Callable[[Floats], Floats], radius: float, off: float
+) -> Surface:
+    """Return a level of a channel, as high over the hub as `height` says in mm at u (k,); its normals are the rulings.
+
+    Where these lean out of the hub's normal, by an angle a, a ball of a radius on them is nearer to the hub than its contact. The level is
+    raised where the ball would be nearer than `off` mm: (h + R) cos(a) - R >= off.
+    """
 
     def surface(u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        w = height(u) / channel.meridian.height(np.clip(u, 0.0, 1.0))
-        return channel.at(u, v, w), channel.rulings(u, v)
+        ruling = channel.rulings(u, v)
+        upright = np.maximum((ruling * channel.hub(u, v)[1]).sum(axis=1), LEAST_UPRIGHT)
+        lowest = (radius + off) / upright - radius
+        w = np.maximum(height(u), lowest) / channel.meridian.height(np.clip(u, 0.0, 1.0))
+        return channel.at(u, v, w), ruling
 
     return surface
 

@@ -54,7 +54,7 @@ def linked_round(
     if not passes:
         return EMPTY
     blocks = _Blocks(parameters)
-    straight = _straight(passes, parameters, groups or [0] * len(passes))
+    straight = straight_links(passes, parameters, groups or [0] * len(passes))
     over = _over_blank(passes, parameters, straight)
     for k, one in enumerate(passes):
         link = over[k - 1] if k else None
@@ -153,7 +153,7 @@ def _turned(path: Toolpath, angle: float) -> Toolpath:
     return replace(path, position=path.position @ matrix, axis=path.axis @ matrix)
 
 
-def _straight(
+def straight_links(
     passes: Sequence[Pass], parameters: SphereLinkParameters, groups: Sequence[int]
 ) -> list[bool]:
     """Return for each pass but the last whether the next one is reached straight at feed."""
