@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import cadquery as cq
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -19,7 +20,7 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Box
 from trunnion.model.feature import Recognition
 from trunnion.part.shape.skin import skin_of
-from trunnion.plan.holes.axis_clearance import AxisClearance
+from trunnion.plan.holes.axis_clearance import AxisClearance, SkinBalls
 from trunnion.plan.holes.hole import PlannedHole
 from trunnion.plan.holes.tools import AROUND, HoleSpace
 from trunnion.plan.prismatic.regions import SetupSpace
@@ -44,23 +45,69 @@ def skin_from(corners) -> Skin:
     )
 
 
+def clipped(corners, z):
+    """Return the points of a dense net over triangles that are over a height, by its barycentric shares: the reference."""
+    points = (SHARES @ corners).reshape(-1, 3)
+    return points[points[:, 2] >= z]
+
+
 @settings(deadline=None)
 @given(corners=CORNERS, z=st.floats(-40.0, 40.0), within=st.floats(1.0, 80.0))
 def test_no_point_of_a_triangle_from_a_height_on_is_nearer_than_the_bound(corners, z, within):
-    near = AxisClearance.near(skin_from(corners), 0.0, LEANING, AXIS, within)
-    points = (SHARES @ corners).reshape(-1, 3)
-    away = np.linalg.norm(points[points[:, 2] >= z + 1e-9, :2] - AXIS, axis=1)
-    assert min(away.min(initial=np.inf), within) >= min(near.distance_from(z), within) - 1e-9
+    near = AxisClearance.near(SkinBalls.of(skin_from(corners)), 0.0, LEANING, AXIS, within)
+    away = np.linalg.norm(clipped(corners, z + 1e-9)[:, :2] - AXIS, axis=1)
+    least, most = near.distance_from(z)
+    assert min(away.min(initial=np.inf), within) >= min(least, within) - 1e-9
+    assert least <= most
 
 
-@settings(deadline=None)
-@given(corners=CORNERS)
-def test_of_triangles_that_are_all_over_the_height_it_is_their_distance(corners):
-    points = (SHARES @ corners).reshape(-1, 3)[:, :2]
-    nearest = np.linalg.norm(points - AXIS, axis=1).min()
-    found = AxisClearance.near(skin_from(corners), 0.0, LEANING, AXIS, 200.0).distance_from(-50.0)
-    # No triangle is wider than 160 mm, and its points are drawn that densely.
-    assert nearest - 40.0 <= found <= nearest + 1e-9
+@pytest.mark.parametrize("seed", range(40))
+def test_both_bounds_are_the_distance_of_what_is_over_the_height(seed):
+    pick = np.random.default_rng(seed)
+    corners, z = pick.uniform(-40.0, 40.0, (4, 3, 3)), float(pick.uniform(-40.0, 30.0))
+    found = AxisClearance.near(SkinBalls.of(skin_from(corners)), 0.0, LEANING, AXIS, 200.0)
+    least, most = found.distance_from(z)
+    assert least == most
+    away = [shapely.Polygon(c).distance(shapely.Point(AXIS)) for c in map(over(z), corners) if c]
+    assert least == pytest.approx(min(away, default=np.inf), abs=1e-9)
+
+
+def over(z):
+    """Return what clips a triangle (3, 3) at a height: the plan corners of what is over it, by Sutherland and Hodgman."""
+
+    def clip(triangle):
+        found = []
+        for start, end in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
+            if start[2] > z:
+                found.append(tuple(start[:2]))
+            if (start[2] > z) != (end[2] > z):
+                share = (z - start[2]) / (end[2] - start[2])
+                found.append(tuple((start + share * (end - start))[:2]))
+        return found
+
+    return clip
+
+
+def test_of_a_triangle_that_is_partly_over_the_height_only_that_part_counts():
+    """The whole of it was taken for high: a hole in a slope was never free of it."""
+    corners = np.array([[[10.0, -1.0, 0.0], [10.0, 1.0, 0.0], [30.0, 0.0, 20.0]]])
+    found = AxisClearance.near(SkinBalls.of(skin_from(corners)), 0.0, LEANING, np.zeros(2), 200.0)
+    assert found.distance_from(10.0) == pytest.approx((20.0, 20.0))
+    assert found.distance_from(25.0) == (np.inf, np.inf)
+    over = np.array([[[-30.0, -10.0, 0.0], [-30.0, 10.0, 0.0], [30.0, 0.0, 20.0]]])
+    found = AxisClearance.near(SkinBalls.of(skin_from(over)), 0.0, LEANING, np.zeros(2), 200.0)
+    assert found.distance_from(9.9)[0] == 0.0
+    assert found.distance_from(12.0) == pytest.approx((6.0, 6.0))
+
+
+@pytest.mark.parametrize("count", [1, 63, 64, 65, 200])
+def test_balls_hold_their_triangles_and_none_near_an_axis_is_missed(count):
+    corners = np.random.default_rng(count).uniform(-50.0, 50.0, (count, 1, 3))
+    corners = corners + np.random.default_rng(1).uniform(-2.0, 2.0, (count, 3, 3))
+    balls = SkinBalls.of(skin_from(corners))
+    away = np.linalg.norm(corners[:, :, :2] - AXIS, axis=2).min(axis=1)
+    rows = balls.near(LEANING, AXIS, 5.0)
+    assert set(np.flatnonzero(away <= 5.0)) <= set(rows.tolist())
 
 
 @pytest.fixture(scope="module")
@@ -93,9 +140,11 @@ def hole_at(space, x, y) -> PlannedHole:
     )
 
 
-def test_triangles_call_free_only_what_sections_do(space):
+def test_triangles_say_of_free_space_what_sections_do(space):
     skin = skin_of(space.part, WORLD, tolerance.CHORD)
-    quick, exact = (HoleSpace(space=space, clearance=1.0, skin=s) for s in (skin, None))
+    quick, exact = (
+        HoleSpace(space=space, clearance=1.0, balls=b) for b in (SkinBalls.of(skin), None)
+    )
     pick, told = np.random.default_rng(8), 0
     for x, y, up, radius in zip(
         pick.uniform(2, 100, 60),
@@ -112,12 +161,15 @@ def test_triangles_call_free_only_what_sections_do(space):
     assert told > 50
 
 
-def test_no_section_is_made_where_nothing_stands_near(space):
+def test_sections_are_made_only_where_triangles_are_not_exact_enough(space):
     skin = skin_of(space.part, WORLD, tolerance.CHORD)
     lonely = SimpleNamespace(top=space.top, setup=space.setup)
-    around = HoleSpace(space=lonely, clearance=1.0, skin=skin)
+    around = HoleSpace(space=lonely, clearance=1.0, balls=SkinBalls.of(skin))
     corner = hole_at(space, 5.0, 5.0)
     assert around.is_open(corner)
     assert around.is_free(corner, corner.top + 1.0, 20.0)
+    assert not around.is_free(corner, corner.top + 1.0, AROUND - 1.0)
+    # What is within the triangles' error is asked of sections.
+    near = hole_at(space, 30.0, 22.0)
     with pytest.raises(AttributeError):
-        around.is_free(corner, corner.top + 1.0, AROUND - 1.0)
+        around.is_free(near, near.top + 1.0, 10.0)

@@ -12,9 +12,8 @@ from dataclasses import dataclass, field
 
 from trunnion import tolerance
 from trunnion.geometry.plane.region import Region
-from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.holes.axis_clearance import AxisClearance
+from trunnion.plan.holes.axis_clearance import AxisClearance, SkinBalls
 from trunnion.plan.holes.hole import Countersink, PlannedHole
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.tool_choice import Candidates, depth_reached
@@ -63,13 +62,13 @@ def sink_tip(hole: PlannedHole, sink: Countersink, cone: ToolCone) -> float:
 class HoleSpace:
     """What stands around holes in a setup, `clearance` mm over which shank and holder stay; sections are made once a height.
 
-    Where a `skin` is given, in the part's coordinates, its triangles answer where nothing of them is near: sections cost a part with
-    many directions of holes most of its planning.
+    Where `balls` of a skin are given, in the part's coordinates, its triangles answer all that is not within their error: sections cost a
+    part with many directions of holes most of its planning.
     """
 
     space: SetupSpace
     clearance: float
-    skin: Skin | None = None
+    balls: SkinBalls | None = None
     _free: dict[tuple[float, float, float], float] = field(default_factory=dict)
     _nearest: tuple[tuple[float, float], AxisClearance] | None = None
 
@@ -86,21 +85,20 @@ class HoleSpace:
 
     def is_free(self, hole: PlannedHole, z: float, radius: float) -> bool:
         """Return whether the part is no nearer to a hole's axis than a radius (mm), at a height and over it."""
-        if (
-            self.skin is not None
-            and self._triangles_near(self.skin, hole).distance_from(z) >= radius
-        ):
-            return True
+        if self.balls is not None:
+            least, most = self._triangles_near(self.balls, hole).distance_from(z)
+            if least >= radius or most < radius:
+                return least >= radius
         return self.free_radius(hole, z) >= radius
 
-    def _triangles_near(self, skin: Skin, hole: PlannedHole) -> AxisClearance:
+    def _triangles_near(self, balls: SkinBalls, hole: PlannedHole) -> AxisClearance:
         """Return the triangles near a hole; those of the last hole are kept."""
         if self._nearest is None or self._nearest[0] != (hole.x, hole.y):
-            bound = max(skin.bound, tolerance.CHORD)
+            bound = max(balls.skin.bound, tolerance.CHORD)
             frame = self.space.setup.frame
             self._nearest = (
                 (hole.x, hole.y),
-                AxisClearance.near(skin, bound, frame, hole.position, AROUND),
+                AxisClearance.near(balls, bound, frame, hole.position, AROUND),
             )
         return self._nearest[1]
 
