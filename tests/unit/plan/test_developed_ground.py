@@ -33,7 +33,7 @@ RADIUS, LENGTH, WIDE, HIGH = 100.0, 60.0, 20.0, 8.0
 BOSS = 7
 
 
-def ground() -> DevelopedGround:
+def ground(ends: tuple[float, float] = (0.0, LENGTH)) -> DevelopedGround:
     """Return a cylinder with a flange over its lower end and a square block that stands on it at x, under a turned ring."""
     turn = np.linspace(0.0, 2.0 * np.pi, 361)
     rows = [(RADIUS, 0.0), (RADIUS + 12.0, 0.0)]
@@ -74,7 +74,7 @@ def ground() -> DevelopedGround:
         density=2.8,
     )
     development = Development(frame=WORLD, radius=RADIUS, height=0.0, slope=0.0, middle=0.0)
-    return ground_of(development, (0.0, LENGTH), mesh, [((BOSS,), True)], (1,), blank, NO_PROGRESS)
+    return ground_of(development, ends, mesh, [((BOSS,), True)], (1,), blank, NO_PROGRESS)
 
 
 def test_a_block_stands_on_the_ground_as_wide_as_it_is_seen_from_the_axis() -> None:
@@ -85,6 +85,13 @@ def test_a_block_stands_on_the_ground_as_wide_as_it_is_seen_from_the_axis() -> N
     foot = RADIUS * math.asin(0.5 * WIDE / (RADIUS + 4.0))
     assert (x0, x1) == pytest.approx((-foot, foot), abs=0.1)
     assert (y0, y1) == pytest.approx((20.0, 40.0), abs=0.1)
+
+
+@pytest.mark.parametrize(("beyond", "is_there"), [(10.0, True), (88.0, True), (92.0, False)])
+def test_only_what_no_cutter_on_the_ground_comes_near_is_left_out(beyond, is_there) -> None:
+    """The block ends at 40 mm; cutters reach two of the 45 mm that are looked at beyond the ground."""
+    assert bool(ground((40.0 + beyond, 140.0 + beyond)).obstacles) == is_there
+    assert bool(ground((-140.0 - beyond, 20.0 - beyond)).obstacles) == is_there
 
 
 def test_over_its_top_nothing_of_it_is_in_the_way() -> None:

@@ -237,11 +237,15 @@ def ground_of(
     progress: Progress,
 ) -> DevelopedGround:
     """Return ground with what stands on it: sets of faces by their tags, and whether openings in them are no way down; `rings` are faces of
-    revolution that run round."""
+    revolution that run round. Sets too far beyond its ends to be in a cutter's way on it are left out."""
     margin = AROUND / float(development.radius_at(np.array(ends)).min())
     made = []
     for tags, closed in progress.each(obstacles):
         corners = mesh.points[mesh.triangles[np.isin(mesh.face, tags)]]
+        along = development.along_and_turn(development.to_local(corners.reshape(-1, 3)))[0]
+        low, high = along.min(initial=math.inf), along.max(initial=-math.inf)
+        if low > ends[1] + 2.0 * AROUND or high < ends[0] - 2.0 * AROUND:
+            continue
         flat = developed_triangles(corners, development, BELOW, margin)
         made.append(GroundObstacle(corners=flat, closed=closed))
     return DevelopedGround(
