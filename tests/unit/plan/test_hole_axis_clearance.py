@@ -20,7 +20,7 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Box
 from trunnion.model.feature import Recognition
 from trunnion.part.shape.skin import skin_of
-from trunnion.plan.holes.axis_clearance import AxisClearance, SkinBalls
+from trunnion.plan.holes.axis_clearance import AxisClearance, SkinGroups
 from trunnion.plan.holes.hole import PlannedHole
 from trunnion.plan.holes.tools import AROUND, HoleSpace
 from trunnion.plan.prismatic.regions import SetupSpace
@@ -54,7 +54,7 @@ def clipped(corners, z):
 @settings(deadline=None)
 @given(corners=CORNERS, z=st.floats(-40.0, 40.0), within=st.floats(1.0, 80.0))
 def test_no_point_of_a_triangle_from_a_height_on_is_nearer_than_the_bound(corners, z, within):
-    near = AxisClearance.near(SkinBalls.of(skin_from(corners)), 0.0, LEANING, AXIS, within)
+    near = AxisClearance.near(SkinGroups.of(skin_from(corners)), 0.0, LEANING, AXIS, within)
     away = np.linalg.norm(clipped(corners, z + 1e-9)[:, :2] - AXIS, axis=1)
     least, most = near.distance_from(z)
     assert min(away.min(initial=np.inf), within) >= min(least, within) - 1e-9
@@ -65,7 +65,7 @@ def test_no_point_of_a_triangle_from_a_height_on_is_nearer_than_the_bound(corner
 def test_both_bounds_are_the_distance_of_what_is_over_the_height(seed):
     pick = np.random.default_rng(seed)
     corners, z = pick.uniform(-40.0, 40.0, (4, 3, 3)), float(pick.uniform(-40.0, 30.0))
-    found = AxisClearance.near(SkinBalls.of(skin_from(corners)), 0.0, LEANING, AXIS, 200.0)
+    found = AxisClearance.near(SkinGroups.of(skin_from(corners)), 0.0, LEANING, AXIS, 200.0)
     least, most = found.distance_from(z)
     assert least == most
     away = [shapely.Polygon(c).distance(shapely.Point(AXIS)) for c in map(over(z), corners) if c]
@@ -91,11 +91,11 @@ def over(z):
 def test_of_a_triangle_that_is_partly_over_the_height_only_that_part_counts():
     """The whole of it was taken for high: a hole in a slope was never free of it."""
     corners = np.array([[[10.0, -1.0, 0.0], [10.0, 1.0, 0.0], [30.0, 0.0, 20.0]]])
-    found = AxisClearance.near(SkinBalls.of(skin_from(corners)), 0.0, LEANING, np.zeros(2), 200.0)
+    found = AxisClearance.near(SkinGroups.of(skin_from(corners)), 0.0, LEANING, np.zeros(2), 200.0)
     assert found.distance_from(10.0) == pytest.approx((20.0, 20.0))
     assert found.distance_from(25.0) == (np.inf, np.inf)
     over = np.array([[[-30.0, -10.0, 0.0], [-30.0, 10.0, 0.0], [30.0, 0.0, 20.0]]])
-    found = AxisClearance.near(SkinBalls.of(skin_from(over)), 0.0, LEANING, np.zeros(2), 200.0)
+    found = AxisClearance.near(SkinGroups.of(skin_from(over)), 0.0, LEANING, np.zeros(2), 200.0)
     assert found.distance_from(9.9)[0] == 0.0
     assert found.distance_from(12.0) == pytest.approx((6.0, 6.0))
 
@@ -104,9 +104,9 @@ def test_of_a_triangle_that_is_partly_over_the_height_only_that_part_counts():
 def test_balls_hold_their_triangles_and_none_near_an_axis_is_missed(count):
     corners = np.random.default_rng(count).uniform(-50.0, 50.0, (count, 1, 3))
     corners = corners + np.random.default_rng(1).uniform(-2.0, 2.0, (count, 3, 3))
-    balls = SkinBalls.of(skin_from(corners))
+    groups = SkinGroups.of(skin_from(corners))
     away = np.linalg.norm(corners[:, :, :2] - AXIS, axis=2).min(axis=1)
-    rows = balls.near(LEANING, AXIS, 5.0)
+    rows = groups.near(LEANING, AXIS, 5.0)
     assert set(np.flatnonzero(away <= 5.0)) <= set(rows.tolist())
 
 
@@ -143,7 +143,7 @@ def hole_at(space, x, y) -> PlannedHole:
 def test_triangles_say_of_free_space_what_sections_do(space):
     skin = skin_of(space.part, WORLD, tolerance.CHORD)
     quick, exact = (
-        HoleSpace(space=space, clearance=1.0, balls=b) for b in (SkinBalls.of(skin), None)
+        HoleSpace(space=space, clearance=1.0, groups=b) for b in (SkinGroups.of(skin), None)
     )
     pick, told = np.random.default_rng(8), 0
     for x, y, up, radius in zip(
@@ -164,7 +164,7 @@ def test_triangles_say_of_free_space_what_sections_do(space):
 def test_sections_are_made_only_where_triangles_are_not_exact_enough(space):
     skin = skin_of(space.part, WORLD, tolerance.CHORD)
     lonely = SimpleNamespace(top=space.top, setup=space.setup)
-    around = HoleSpace(space=lonely, clearance=1.0, balls=SkinBalls.of(skin))
+    around = HoleSpace(space=lonely, clearance=1.0, groups=SkinGroups.of(skin))
     corner = hole_at(space, 5.0, 5.0)
     assert around.is_open(corner)
     assert around.is_free(corner, corner.top + 1.0, 20.0)

@@ -17,7 +17,7 @@ from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.freeform.frames import Direction, cutting_setup
-from trunnion.plan.holes.axis_clearance import SkinBalls
+from trunnion.plan.holes.axis_clearance import SkinGroups
 from trunnion.plan.holes.drive import BORE, COUNTERBORE, COUNTERSINK, DRILL, not_reached
 from trunnion.plan.holes.hole import (
     HoleShape,
@@ -58,15 +58,15 @@ def casing_holes(state: CasingPlanState) -> tuple[CasingHole, ...]:
     found = list[CasingHole]()
     other = state.turned_over()
     spaces: dict[tuple[str, Direction], HoleSpace] = {}
-    balls = SkinBalls.of(state.context.skin(tolerance.CHORD, state.progress))
+    groups = SkinGroups.of(state.context.skin(tolerance.CHORD, state.progress))
     for feature in state.progress.each(state.recognition.of_kind(HOLE)):
         try:
-            found.append(_reached(state, feature, spaces, balls))
+            found.append(_reached(state, feature, spaces, groups))
         except Refused as reason:
             try:
                 if other is None:
                     raise
-                found.append(_reached(other, feature, spaces, balls))
+                found.append(_reached(other, feature, spaces, groups))
             except Refused:
                 state.findings.append(not_reached(feature, str(reason)))
     return tuple(found)
@@ -76,9 +76,9 @@ def _reached(
     state: CasingPlanState,
     feature: Feature,
     spaces: dict[tuple[str, Direction], HoleSpace],
-    balls: SkinBalls,
+    groups: SkinGroups,
 ) -> CasingHole:
-    """Return a hole as the setup makes it; `spaces` keeps what stands along directions, of the triangles in `balls`.
+    """Return a hole as the setup makes it; `spaces` keeps what stands along directions, of the triangles in `groups`.
 
     Raises `Refused` where the part is in the way.
     """
@@ -90,7 +90,7 @@ def _reached(
         spaces[key] = HoleSpace(
             space=SetupSpace.of(state.part, state.recognition, state.blank, setup),
             clearance=state.route.reach_clearance,
-            balls=balls,
+            groups=groups,
         )
     around = spaces[key]
     shape = hole_in(feature, state.recognition.frame, around.space.setup.frame)

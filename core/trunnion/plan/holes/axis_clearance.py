@@ -15,16 +15,16 @@ TOGETHER = 64
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class SkinBalls:
-    """Balls, `centre` (b, 3) and `radius` (b,) mm, around so many triangles of a skin in a row each: few are near an axis."""
+class SkinGroups:
+    """Triangles of a skin in groups of so many in a row, in a ball each, `centre` (b, 3) and `radius` (b,) mm: few are near an axis."""
 
     skin: Skin
     centre: Floats
     radius: Floats
 
     @staticmethod
-    def of(skin: Skin) -> SkinBalls:
-        """Return the balls around the triangles of a skin."""
+    def of(skin: Skin) -> SkinGroups:
+        """Return the triangles of a skin in groups."""
         first = np.arange(0, len(skin.triangles), TOGETHER)
         corners = skin.points[skin.triangles]
         count = np.diff(np.append(first, len(skin.triangles)))
@@ -32,7 +32,7 @@ class SkinBalls:
         high = np.maximum.reduceat(corners.max(axis=1), first, axis=0)
         centre = 0.5 * (low + high)
         away = np.linalg.norm(corners - np.repeat(centre, count, axis=0)[:, None], axis=2)
-        return SkinBalls(
+        return SkinGroups(
             skin=skin, centre=centre, radius=np.maximum.reduceat(away.max(axis=1), first)
         )
 
@@ -55,11 +55,11 @@ class AxisClearance:
 
     @staticmethod
     def near(
-        balls: SkinBalls, bound: float, frame: Frame, axis: Floats, within: float
+        groups: SkinGroups, bound: float, frame: Frame, axis: Floats, within: float
     ) -> AxisClearance:
         """Return the triangles of a skin in the part's coordinates that come `within` mm of an axis (2,), upright in a frame."""
-        skin = balls.skin
-        triangles = skin.triangles[balls.near(frame, axis, within)]
+        skin = groups.skin
+        triangles = skin.triangles[groups.near(frame, axis, within)]
         corners = frame.to_local(skin.points[triangles])
         corners[:, :, :2] -= axis
         plan = corners[:, :, :2]

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from trunnion import tolerance
 from trunnion.geometry.plane.region import Region
 from trunnion.model.tool import Tool
-from trunnion.plan.holes.axis_clearance import AxisClearance, SkinBalls
+from trunnion.plan.holes.axis_clearance import AxisClearance, SkinGroups
 from trunnion.plan.holes.hole import Countersink, PlannedHole
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.tool_choice import Candidates, depth_reached
@@ -62,13 +62,13 @@ def sink_tip(hole: PlannedHole, sink: Countersink, cone: ToolCone) -> float:
 class HoleSpace:
     """What stands around holes in a setup, `clearance` mm over which shank and holder stay; sections are made once a height.
 
-    Where `balls` of a skin are given, in the part's coordinates, its triangles answer all that is not within their error: sections cost a
+    Where `groups` of a skin are given, in the part's coordinates, its triangles answer all that is not within their error: sections cost a
     part with many directions of holes most of its planning.
     """
 
     space: SetupSpace
     clearance: float
-    balls: SkinBalls | None = None
+    groups: SkinGroups | None = None
     _free: dict[tuple[float, float, float], float] = field(default_factory=dict)
     _nearest: tuple[tuple[float, float], AxisClearance] | None = None
 
@@ -85,20 +85,20 @@ class HoleSpace:
 
     def is_free(self, hole: PlannedHole, z: float, radius: float) -> bool:
         """Return whether the part is no nearer to a hole's axis than a radius (mm), at a height and over it."""
-        if self.balls is not None:
-            least, most = self._triangles_near(self.balls, hole).distance_from(z)
+        if self.groups is not None:
+            least, most = self._triangles_near(self.groups, hole).distance_from(z)
             if least >= radius or most < radius:
                 return least >= radius
         return self.free_radius(hole, z) >= radius
 
-    def _triangles_near(self, balls: SkinBalls, hole: PlannedHole) -> AxisClearance:
+    def _triangles_near(self, groups: SkinGroups, hole: PlannedHole) -> AxisClearance:
         """Return the triangles near a hole; those of the last hole are kept."""
         if self._nearest is None or self._nearest[0] != (hole.x, hole.y):
-            bound = max(balls.skin.bound, tolerance.CHORD)
+            bound = max(groups.skin.bound, tolerance.CHORD)
             frame = self.space.setup.frame
             self._nearest = (
                 (hole.x, hole.y),
-                AxisClearance.near(balls, bound, frame, hole.position, AROUND),
+                AxisClearance.near(groups, bound, frame, hole.position, AROUND),
             )
         return self._nearest[1]
 
