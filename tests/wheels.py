@@ -7,7 +7,10 @@ from scipy.interpolate import RegularGridInterpolator
 
 from trunnion.plan.channel.blade_channel import NO_TOE, U_BEYOND, BladeChannel, Camber
 from trunnion.plan.channel.meridian import MeridianSpline, WheelMeridian
+from trunnion.toolpath.contact_passes.sphere_links import SphereLinkParameters
+from trunnion.toolpath.motion.reorient import ClearanceSphere
 
+SPHERE = ClearanceSphere(centre=np.zeros(3), radius=50.0)
 HUB_RADIUS, SHROUD_RADIUS = 30.0, 20.0
 """mm: radii of the quarter circles in the meridian, both about (40, 32)."""
 SWEEP, HALF_THICK = 0.6, 0.03
@@ -36,3 +39,16 @@ def camber(angle: float = 0.0) -> Camber:
 def channel(count: int = 9) -> BladeChannel:
     """Return the channel between two of so many blades."""
     return BladeChannel(meridian=meridian(), lower=camber(), upper=camber(2.0 * np.pi / count))
+
+
+def links_round(near: float) -> SphereLinkParameters:
+    """Return links round a sphere of 50 mm about the origin, where every pose is clear."""
+    return SphereLinkParameters(
+        near=near,
+        turn=0.5,
+        feed=1000.0,
+        link_feed=500.0,
+        sphere=SPHERE,
+        retreat=lambda tip, axis: 4.0,
+        query=lambda tip, axis, **_: np.ones(len(tip), dtype=bool),
+    )

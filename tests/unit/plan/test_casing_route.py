@@ -60,7 +60,7 @@ def test_every_boss_gets_its_top_and_sides_and_the_hole_is_drilled_along_its_axi
 @pytest.mark.parametrize(("hollow", "left"), [(1.0, True), (2.05, False), (30.0, False)])
 def test_sides_with_hollows_that_nothing_goes_into_are_cut_by_one_of_the_smallest(hollow, left):
     """A random boss of three lobes had hollows of R 2.16: no cutter was nine tenths of that, and the whole program was refused for it."""
-    # An engine of its own: what another one keeps of this part was worked out for the features that it found.
+    # An engine of its own: the shared one's session may have been made while a package's family was registered, and is stale without it.
     shared, known = own("casing")
     engine = Engine()
     opened = engine.with_choices(engine.open(part_of(shared).path), known.choices)

@@ -94,14 +94,14 @@ def test_of_a_triangle_that_is_partly_over_the_height_only_that_part_counts():
     found = AxisClearance.near(SkinGroups.of(skin_from(corners)), 0.0, LEANING, np.zeros(2), 200.0)
     assert found.distance_from(10.0) == pytest.approx((20.0, 20.0))
     assert found.distance_from(25.0) == (np.inf, np.inf)
-    over = np.array([[[-30.0, -10.0, 0.0], [-30.0, 10.0, 0.0], [30.0, 0.0, 20.0]]])
-    found = AxisClearance.near(SkinGroups.of(skin_from(over)), 0.0, LEANING, np.zeros(2), 200.0)
+    above = np.array([[[-30.0, -10.0, 0.0], [-30.0, 10.0, 0.0], [30.0, 0.0, 20.0]]])
+    found = AxisClearance.near(SkinGroups.of(skin_from(above)), 0.0, LEANING, np.zeros(2), 200.0)
     assert found.distance_from(9.9)[0] == 0.0
     assert found.distance_from(12.0) == pytest.approx((6.0, 6.0))
 
 
 @pytest.mark.parametrize("count", [1, 63, 64, 65, 200])
-def test_balls_hold_their_triangles_and_none_near_an_axis_is_missed(count):
+def test_groups_hold_their_triangles_and_none_near_an_axis_is_missed(count):
     corners = np.random.default_rng(count).uniform(-50.0, 50.0, (count, 1, 3))
     corners = corners + np.random.default_rng(1).uniform(-2.0, 2.0, (count, 3, 3))
     groups = SkinGroups.of(skin_from(corners))

@@ -11,10 +11,8 @@ from leaning_tools import cutter
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.toolpath.contact_passes.open_axes import open_axes
 from trunnion.toolpath.contact_passes.passes import Pass
-from trunnion.toolpath.contact_passes.sphere_links import SphereLinkParameters, copied, linked_round
-from trunnion.toolpath.motion.reorient import ClearanceSphere
-
-SPHERE = ClearanceSphere(centre=np.zeros(3), radius=50.0)
+from trunnion.toolpath.contact_passes.sphere_links import copied, linked_round
+from wheels import SPHERE, links_round
 
 
 def within(low: float, high: float):
@@ -62,32 +60,20 @@ def straight(y: float) -> Pass:
     return Pass(tip=tip, axis=axis, normal=axis)
 
 
-def parameters(near: float) -> SphereLinkParameters:
-    return SphereLinkParameters(
-        near=near,
-        turn=0.5,
-        feed=1000.0,
-        link_feed=500.0,
-        sphere=SPHERE,
-        retreat=lambda tip, axis: 4.0,
-        query=lambda tip, axis, **_: np.ones(len(tip), dtype=bool),
-    )
-
-
 def test_passes_side_by_side_are_linked_at_feed():
-    path = linked_round([straight(0.0), straight(1.0).reversed()], parameters(2.0))
+    path = linked_round([straight(0.0), straight(1.0).reversed()], links_round(2.0))
     assert (path.mark == Mark.LINK).sum() == 1
     rapid = path.motion == Motion.RAPID
     assert rapid.tolist() == [True, True, *[False] * (len(path) - 3), True]
 
 
 def test_passes_of_other_groups_are_not():
-    path = linked_round([straight(0.0), straight(1.0).reversed()], parameters(2.0), [0, 1])
+    path = linked_round([straight(0.0), straight(1.0).reversed()], links_round(2.0), [0, 1])
     assert (path.mark == Mark.LINK).sum() == 0
 
 
 def test_rapids_turn_the_tool_only_outside_of_the_sphere():
-    one = linked_round([straight(0.0), straight(20.0)], parameters(2.0))
+    one = linked_round([straight(0.0), straight(20.0)], links_round(2.0))
     path = copied(one, (0.0, 2.0, 4.0), SPHERE)
     turned = np.flatnonzero(np.linalg.norm(np.diff(path.axis, axis=0), axis=1) > 1e-9) + 1
     for rows in (turned - 1, turned):
@@ -97,7 +83,7 @@ def test_rapids_turn_the_tool_only_outside_of_the_sphere():
 
 
 def test_copies_are_the_path_turned_about_the_axis_from_upright_to_upright():
-    one = linked_round([straight(0.0)], parameters(2.0))
+    one = linked_round([straight(0.0)], links_round(2.0))
     path = copied(one, (0.0, 0.5 * math.pi), SPHERE)
     cut = path.position[path.mark == Mark.CUT]
     half = len(cut) // 2

@@ -15,8 +15,7 @@ from trunnion.toolpath.channel.rough import GONE, OVERLAP, from_outside, still_t
 from trunnion.toolpath.contact_passes.channel_lines import level_of
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.passes import Pass
-from trunnion.toolpath.contact_passes.sphere_links import SphereLinkParameters
-from trunnion.toolpath.motion.reorient import ClearanceSphere
+from wheels import links_round
 
 SMALL = cutter("ball", 2.0, 1.0)
 OFF = 0.3
@@ -105,28 +104,16 @@ def straight(y: float, start: float, end: float) -> Pass:
     return Pass(tip=tip, axis=axis, normal=axis)
 
 
-def parameters(near: float) -> SphereLinkParameters:
-    return SphereLinkParameters(
-        near=near,
-        turn=0.5,
-        feed=1000.0,
-        link_feed=500.0,
-        sphere=ClearanceSphere(centre=np.zeros(3), radius=90.0),
-        retreat=lambda tip, axis: 4.0,
-        query=lambda tip, axis, **_: np.ones(len(tip), dtype=bool),
-    )
-
-
 def test_passes_begin_outside_or_beside_the_end_of_the_one_before():
     def inward(points):
         return points[:, 0] - 0.0
 
     passes = [straight(0.0, 30.0, -5.0), straight(2.0, 30.0, -5.0), straight(40.0, 25.0, -5.0)]
-    order = from_outside(passes, SMALL, inward, parameters(3.0))
+    order = from_outside(passes, SMALL, inward, links_round(3.0))
     begins = [(one.tip[0, 0], one.tip[0, 1]) for one in order]
     assert begins == [(-5.0, 0.0), (30.0, 2.0), (-5.0, 40.0)]
     # Far from each other both begin outside; one that is reached from nowhere is left to a smaller cutter.
-    begins = [one.tip[0, 0] for one in from_outside(passes, SMALL, inward, parameters(1.0))]
+    begins = [one.tip[0, 0] for one in from_outside(passes, SMALL, inward, links_round(1.0))]
     assert begins == [-5.0, -5.0, -5.0]
     inside = straight(60.0, 10.0, 30.0)
-    assert len(from_outside([*passes, inside], SMALL, inward, parameters(3.0))) == 3
+    assert len(from_outside([*passes, inside], SMALL, inward, links_round(3.0))) == 3
