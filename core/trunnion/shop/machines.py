@@ -15,6 +15,8 @@ from trunnion.units import FARTHEST, FASTEST
 AXIS_KINDS = ("linear", "rotary")
 CARRIES = ("tool", "work")
 MOST_ROTARY = 2
+ENDLESS = 1e7
+"""degrees: the limits of a rotary axis that turns for ever; no program winds it up by so many turns."""
 _SHORTEST = 1e-6
 _LEAST_BETWEEN = 1e-3
 _STRONGEST = 1_000.0
@@ -100,7 +102,8 @@ def _axis(entry: CatalogueEntry) -> Axis:
     if kind not in AXIS_KINDS:
         raise entry.wrong(f"kind must be one of {', '.join(AXIS_KINDS)}; got {kind!r}")
     turning = _turning(entry) if kind == "rotary" else {}
-    low, high = (entry.number(end, -FARTHEST, FARTHEST) for end in ("low", "high"))
+    farthest = ENDLESS if kind == "rotary" else FARTHEST
+    low, high = (entry.number(end, -farthest, farthest) for end in ("low", "high"))
     axis = Axis(
         name=entry.text("name"),
         kind=kind,

@@ -16,6 +16,7 @@ from leaning_paths import (
     FORK,
     HEADER,
     MACHINES,
+    SHOP,
     TABLE,
     UP,
     again,
@@ -132,6 +133,22 @@ def test_an_axis_that_may_turn_for_ever_winds_up_and_one_that_may_not_is_refused
         match=r"operation op, block \d+: its tool axis needs .* has C -360 to 360, A -110 to 110",
     ):
         joint_path(turns, FLAT_16, standing(FORK), None, PathTolerance(feed=0.01, rapid=0.5), "op")
+
+
+@pytest.mark.parametrize("name", ["Trunnion 650", "Cradle 800", "Trunnion 500 B", "Universal 1250"])
+def test_a_table_winds_up_by_more_turns_than_a_finishing_pass_goes_round(name):
+    turns = np.array([lean(25.0, 40.0 * k) for k in range(9 * 400 + 1)])
+    wound = followed(turns, standing(SHOP.machine(name)), None, 1e-4, "op")
+    assert math.degrees(np.ptp(wound[:, 1])) == approx(400 * 360.0)
+
+
+def test_a_text_keeps_its_place_after_hundreds_of_turns():
+    path = path_of(*[((20.0, 0.01 * k, 5.0), lean(25.0, 40.0 * k)) for k in range(9 * 400 + 1)])
+    text = text_of(program(path), standing(TABLE))
+    read = again(text, standing(TABLE)).sections[0].path
+    away = np.linalg.norm(read.position - path.position[-1], axis=1)
+    assert away.min() < 1e-3
+    assert np.abs(read.axis[away.argmin()] - path.axis[-1]).max() < 2e-7
 
 
 def test_a_way_begins_where_its_turns_fit_between_the_limits():
