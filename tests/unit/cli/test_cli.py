@@ -13,7 +13,9 @@ import pytest
 
 from parts import PARTS, needs_parts
 from trunnion import registry
-from trunnion.cli.main import BAD, GENERAL, main
+from trunnion.cli.main import BAD, CANCELLED, GENERAL, main
+from trunnion.findings import Refused
+from trunnion.pipeline import Engine, steps
 
 HEAVY = ("OCP", "cadquery", "vtkmodules", "pyvista", "PySide6", "numba", "shapely")
 
@@ -208,6 +210,26 @@ def test_a_name_that_is_no_file_name_is_refused_before_the_part_is_read(
         main(["program", str(tmp_path / "none.step"), "-o", str(tmp_path), "--name", "a/b"]) == BAD
     )
     assert "can't be the name of files" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("reason", [Refused("the machine can't follow"), KeyboardInterrupt()])
+def test_toolpaths_are_kept_where_the_program_can_not_be_made(
+    capsys: pytest.CaptureFixture[str],
+    sample_part: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    reason: BaseException,
+) -> None:
+    def stop(*_: object) -> None:
+        raise reason
+
+    monkeypatch.setattr(steps, "prove_session", stop)
+    code = main(["program", str(sample_part), "-o", str(tmp_path / "out"), "--name", "kept"])
+    assert code == (BAD if isinstance(reason, Refused) else CANCELLED)
+    kept = tmp_path / "out" / "kept.trunnion"
+    assert f"plan and toolpaths are kept in {kept}" in capsys.readouterr().err
+    session = Engine().open(kept)
+    assert session.paths and all(len(p.path) for p in session.paths)
 
 
 def test_a_user_folder_that_is_missing_is_refused(

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import sys
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
     add_output,
@@ -16,6 +17,13 @@ from trunnion.cli.common import (
     show_json,
 )
 from trunnion.cli.programs.proof import proof_dict, proof_text, verdict_code
+from trunnion.findings import TrunnionError
+from trunnion.store.project_file import PROJECT_SUFFIX
+
+if TYPE_CHECKING:
+    from trunnion.model.session import Session
+    from trunnion.pipeline import Engine
+    from trunnion.progress import Progress
 
 
 def add(commands: Any) -> None:
@@ -35,6 +43,12 @@ def add(commands: Any) -> None:
     made.set_defaults(run=run)
 
 
+LAID, PROVEN = "toolpath", "repair"
+"""The steps that toolpaths are there after, and that a program is proven after."""
+LAYING = (0.1, 0.6)
+"""Shares of the whole work at which the part is read, and at which toolpaths are there."""
+
+
 def run(options: argparse.Namespace) -> int:
     """Run the whole line and write its files."""
     from trunnion.pipeline.writing import checked_name
@@ -45,7 +59,10 @@ def run(options: argparse.Namespace) -> int:
     if options.name:
         checked_name(options.name)
     with PictureProcess() as pictures:
-        engine, session = open_session(options, "repair", pictures.ahead)
+        engine, session = open_session(options, None)
+        progress = progress_of(options)
+        session = engine.run(session, LAID, progress.part(*LAYING), pictures.ahead)
+        session = _proven(options, engine, session, progress.part(LAYING[1], 1.0))
         files = engine.write(
             session,
             options.output,
@@ -64,3 +81,22 @@ def run(options: argparse.Namespace) -> int:
         print(f"{len(files)} files in {options.output}, {seconds['all']:.1f} s")
     show_findings(options, session.findings())
     return verdict_code(session)
+
+
+def _proven(
+    options: argparse.Namespace, engine: Engine, session: Session, progress: Progress
+) -> Session:
+    """Return a session with its proof; where that can't be made, or a person stops it, the plan with its toolpaths is kept as a project."""
+    from trunnion.pipeline.writing import name_of
+
+    try:
+        return engine.run(session, PROVEN, progress)
+    except (TrunnionError, KeyboardInterrupt) as reason:
+        kept = options.output / f"{name_of(session, options.name)}{PROJECT_SUFFIX}"
+        options.output.mkdir(parents=True, exist_ok=True)
+        engine.save(session, kept)
+        where = f"plan and toolpaths are kept in {kept}"
+        if isinstance(reason, TrunnionError):
+            raise type(reason)(f"{reason}; {where}") from None
+        print(f"trunnion: {where}", file=sys.stderr)
+        raise
