@@ -23,7 +23,8 @@ class CuttingData:
     `widest` mm: what may stand in front of the cutter at once where the area says so (0: only the strategy knows); `slot_share`: share of
     its feed in full width that the spindle leaves a strategy; `peak_power` kW and `peak_torque` Nm at the largest engagement that the
     strategy can meet, and `peak_at`, in words, where that is; `routed_depth` mm: the depth that the route chose where
-    the spindle allows less (0: the same). Where spindle speed and feed were chosen by the optimiser: `handbook_spindle` 1/min and
+    the spindle allows less (0: the same); `entry_angle` degrees: the slope that the material bears helices and ramps at (0: nothing is
+    known of it). Where spindle speed and feed were chosen by the optimiser: `handbook_spindle` 1/min and
     `handbook_feed` mm/min of the material's tables (0 elsewhere), and `bound_by`, what stops a quicker choice, in words.
     `spindle_mode` and `feed_mode` say what a program gives of them: at a constant surface speed `spindle` is that of a rotating tool's own
     diameter, and `highest_spindle` 1/min is never passed.
@@ -50,6 +51,7 @@ class CuttingData:
     spindle_mode: SpindleMode = added(SpindleMode.RPM, written=False)
     highest_spindle: float = added(0.0, written=False)
     feed_mode: FeedMode = added(FeedMode.MINUTE, written=False)
+    entry_angle: float = added(0.0, written=False)
     handbook_spindle: float = added(0.0, written=False)
     handbook_feed: float = added(0.0, written=False)
     bound_by: str = added("", written=False)

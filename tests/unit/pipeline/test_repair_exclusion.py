@@ -202,5 +202,6 @@ def test_a_fixture_that_a_planner_does_not_see_is_kept_out_of(stepped, monkeypat
     mended = engine.run(held)
     kept = {(f.kind, f.operation) for r in mended.repairs if r.kept for f in r.fixes}
     assert mended.verdict.releases, [str(f) for f in mended.findings()]
-    assert {kind for kind, _ in kept} == {"exclude"}
+    # Where leaving the pin out makes nothing better at once, an operation may go altogether.
+    assert "exclude" in {kind for kind, _ in kept} <= {"exclude", "drop"}
     assert "operation.left-out" in {f.code for f in mended.findings()}

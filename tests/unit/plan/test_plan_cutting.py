@@ -16,6 +16,8 @@ from trunnion.plan.cutting.milling import (
     CuttingSettings,
     chip_thinning,
     cutting_data,
+    layer_depth,
+    roughing_depth,
     slenderness,
     table_feed,
 )
@@ -105,6 +107,26 @@ def process(kind: str, by_hand: bool = False) -> ProcessTree:
     one = replace(operation(kind, "pocket-01", tool("AL3-regular D20 R3")), by_hand=by_hand)
     setup = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=20.0, machine="Mill 1200")
     return ProcessTree(plan="", material="EN AW-7075", setups=(setup,), operations=(one,))
+
+
+def test_layers_that_slots_open_are_deeper_where_the_material_says_so():
+    cutter = tool("AL3-regular D20 R0")
+    assert layer_depth(cutter, ALUMINIUM, DEFAULT) == approx(20.0)
+    assert roughing_depth(cutter, ALUMINIUM, DEFAULT) == approx(12.0)
+    titanium = SHOP.material("Ti-6Al-4V")
+    assert layer_depth(cutter, titanium, DEFAULT) == roughing_depth(cutter, titanium, DEFAULT)
+
+
+def test_balance_keeps_deep_layers_and_bounds_them_by_a_persons_share():
+    tree = process("rough")
+    one = tree.operations[0]
+    data = cutting_data(one.cutter, ALUMINIUM, MACHINE, "rough", DEFAULT, 18.0, 5.0)
+    tree = replace(tree, operations=(replace(one, data=data),))
+    for share, depth in ((1.0, 18.0), (0.5, 10.0)):
+        limits = replace(DEFAULT, depth_share=share)
+        found = balance(tree, SHOP, limits, TABLES).operations[0].data
+        assert found.depth == approx(depth)
+        assert found.entry_angle == ALUMINIUM.entry_angle > 0.0
 
 
 def test_balance_computes_every_operation_again():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -115,6 +117,48 @@ def test_a_pocket_too_narrow_for_a_helix_is_entered_by_a_ramp() -> None:
 def test_a_fillet_larger_than_the_cutters_corner_is_not_gouged() -> None:
     _, milled = cut(with_allowances(PLAN, 10.0, 4.0), mill(16, 1.0), depth=2.0)
     assert milled.depth_below(milled.pocket_target(PLAN, 10.0, 4.0), PLAN) == 0.0
+
+
+@pytest.mark.parametrize(
+    "plan", [PLAN, rounded(0, 0, 80, 25, 10), PLAN.minus(rounded(30, 20, 50, 30, 2))]
+)
+def test_what_stands_over_fillets_is_cut_where_a_layer_is_tall(plan: Region) -> None:
+    fillet, layer = 4.0, 20.0
+    _, milled = cut(with_allowances(plan, 20.0, fillet), mill(16), depth=layer)
+    beside = plan.signed_distance(milled.points).reshape(milled.x.shape)
+    strip = (beside > 0.8) & (beside < fillet)
+    reached = strip & (plan.offset(-8.4).offset(8.4).signed_distance(milled.points) > 0.1).reshape(
+        strip.shape
+    )
+    assert milled.height[reached].max() == pytest.approx(-20.0 + fillet)
+    assert milled.depth_below(milled.pocket_target(plan, 20.0, fillet), plan) == 0.0
+    assert milled.crashes == []
+
+
+def test_a_low_strip_over_a_fillet_is_left_to_finishing() -> None:
+    _, milled = cut(with_allowances(PLAN, 20.0, 4.0), mill(16), depth=6.0)
+    lowest = {round(float(z), 3) for z in milled.height[milled.height < 0.0].ravel()}
+    assert -16.0 not in lowest
+
+
+def test_entries_are_as_steep_as_the_material_bears_or_a_person_says() -> None:
+    def steepest(bears: float, **chosen: float) -> float:
+        planned = rough(
+            with_allowances(PLAN, 20.0),
+            mill(16),
+            replace(cutting(10.0, 6.0), entry_angle=bears),
+            PlanningStock.of(BLANK, SETUP),
+            SETUP,
+            RoughSettings(**chosen),
+            NO_PROGRESS,
+        )
+        path = planned.path
+        drop = -np.diff(path.position[:, 2], prepend=path.position[0, 2])
+        down = (path.mark == Mark.ENTRY) & (drop > 0.0)
+        return float(np.degrees(np.arcsin(drop[down] / path.lengths()[down])).max())
+
+    assert 2.0 < steepest(0.0) <= 3.0 < steepest(5.0) <= 5.0
+    assert steepest(5.0, ramp_angle=2.0) <= 2.0
 
 
 def test_passes_climb_with_the_wall_on_the_right() -> None:

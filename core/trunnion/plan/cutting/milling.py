@@ -13,7 +13,9 @@ from trunnion.settings import setting, settings
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, trimmed
 
-ROUGHING = ("face", "rough", "corner", "profile_rough")
+ROUGH = "rough"
+"""The kind of operations that go into full material."""
+ROUGHING = ("face", ROUGH, "corner", "profile_rough")
 """Kinds of operation that take the material's roughing speed."""
 
 
@@ -136,10 +138,17 @@ def table_feed(material: Material, diameter: float) -> float:
 
 def roughing_depth(tool: Tool, material: Material, settings: CuttingSettings) -> float:
     """Return the depth of cut in mm that a material and a cutter bear when roughing, not more than the flutes."""
-    return min(
-        material.depth_factor * settings.depth_share * slenderness(tool, settings) * tool.diameter,
-        tool.flute_length,
-    )
+    return _depth(material.depth_factor, tool, settings)
+
+
+def layer_depth(tool: Tool, material: Material, settings: CuttingSettings) -> float:
+    """Return the depth in mm of layers that a cutter bears whose strategy opens them by slots at a feed that the spindle bears."""
+    return _depth(material.deepest_factor, tool, settings)
+
+
+def _depth(factor: float, tool: Tool, settings: CuttingSettings) -> float:
+    bears = factor * settings.depth_share * slenderness(tool, settings) * tool.diameter
+    return min(bears, tool.flute_length)
 
 
 def roughing_width(tool: Tool, material: Material, settings: CuttingSettings) -> float:
@@ -232,4 +241,5 @@ def cutting_data(
         torque=NEWTON_METRES * power / spindle,
         rules=tuple(rules),
         widest=widest,
+        entry_angle=material.entry_angle if kind == ROUGH else 0.0,
     )

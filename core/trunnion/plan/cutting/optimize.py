@@ -6,6 +6,7 @@ import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from trunnion import tolerance
 from trunnion.model.material import Machine, Material
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
@@ -15,6 +16,7 @@ from trunnion.plan.cutting.milling import (
     ROUGHING,
     CuttingSettings,
     cutting_data,
+    layer_depth,
     roughing_depth,
     roughing_width,
 )
@@ -30,7 +32,7 @@ from trunnion.plan.cutting.peak import is_overload, with_peak
 from trunnion.plan.cutting.power import DRILL
 from trunnion.plan.cutting.turning import TURNING_FINISH, turning_data
 from trunnion.progress import NO_PROGRESS, Progress
-from trunnion.settings import Value, declared
+from trunnion.settings import Value, choose, declared
 from trunnion.shop import Shop
 from trunnion.units import MM_PER_METRE
 
@@ -169,7 +171,7 @@ def recomputed(
         return turned_again(operation, operation.tool, material, shop, machine, settings)
     depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
     if operation.kind in ROUGHING and operation.kind != "face":
-        depth = min(depth, roughing_depth(operation.cutter, material, settings))
+        depth = min(depth, _bears(operation, depth, material, settings))
         width = min(width, roughing_width(operation.cutter, material, settings))
     if operation.kind in AXIAL or operation.cutter.form == DRILL:
         data = drilling_data(
@@ -192,6 +194,19 @@ def recomputed(
         operation.data.widest,
     )
     return replace(operation, data=data)
+
+
+def _bears(
+    operation: Operation, depth: float, material: Material, settings: CuttingSettings
+) -> float:
+    """Return the depth (mm) that an operation bears under some limits; one that its route made deeper than the tables' depth of cut has
+    layers."""
+    tool = operation.cutter
+    if depth > roughing_depth(tool, material, choose(CuttingSettings, {})) * (
+        1.0 + tolerance.PARAMETRIC
+    ):
+        return layer_depth(tool, material, settings)
+    return roughing_depth(tool, material, settings)
 
 
 def turned_again(

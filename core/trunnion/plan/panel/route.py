@@ -18,6 +18,7 @@ from trunnion.plan.cutting.drilling import AXIAL, drilling_data
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
+    layer_depth,
     roughing_depth,
     roughing_width,
 )
@@ -69,6 +70,8 @@ FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
 """Width of a face mill's path over its diameter, of a floor's over the cutter's flat, and axial step of a wall over the diameter."""
 
 
+LAYERED = ("rough", "profile_rough")
+"""Kinds of operations in layers that contour-parallel passes open: their feeds are eased where a slot is cut."""
 HOLE_MILLING = (BORE, FLOOR, COUNTERBORE)
 """Kinds of operations that mill holes along helices."""
 HELIX_DEPTH = 0.2
@@ -289,9 +292,10 @@ def _engagement(
     """Return depth ap and width ae: roughing by material, even layers; finishing takes the allowance in steps that the flutes bear."""
     if task.engagement is not None:
         return task.engagement(tool)
-    rough_depth = _even(task.height, roughing_depth(tool, state.material, cutting))
-    rough_width = roughing_width(tool, state.material, cutting)
     kind, allowance = task.stage.kind, state.settings.wall_allowance
+    bears = layer_depth if kind in LAYERED else roughing_depth
+    rough_depth = _even(task.height, bears(tool, state.material, cutting))
+    rough_width = roughing_width(tool, state.material, cutting)
     if kind == "face":
         return _even(task.height, min(tool.flute_length / 2, rough_depth)), min(
             FACE_WIDTH * tool.diameter, task.width

@@ -100,6 +100,16 @@ def clear_area(
         _step_off(builder, layer)
 
 
+def cut_rims(
+    builder: PathBuilder, layer: ClearingLayer, parameters: ClearingParameters, progress: Progress
+) -> None:
+    """Cut the outermost passes of a layer alone; what is inside of them is gone already."""
+    for ring in nearest_first(layer.rings, lambda: builder.here, _ring_away):
+        _cut_passes(builder, layer, ring, parameters, None, builder.data.feed, progress)
+    if len(builder):
+        _step_off(builder, layer)
+
+
 def _cut_ring(
     builder: PathBuilder,
     layer: ClearingLayer,
@@ -112,6 +122,19 @@ def _cut_ring(
     for inner in nearest_first(ring.inner, lambda: builder.here, _ring_away):
         _cut_ring(builder, layer, inner, parameters, trimming, progress)
     feed = builder.data.feed * (1.0 if ring.inner else parameters.slot)
+    _cut_passes(builder, layer, ring, parameters, trimming, feed, progress)
+
+
+def _cut_passes(
+    builder: PathBuilder,
+    layer: ClearingLayer,
+    ring: OffsetRing,
+    parameters: ClearingParameters,
+    trimming: PassTrimming | None,
+    feed: float,
+    progress: Progress,
+) -> None:
+    """Cut the rim of a ring."""
     passes: list[Curve] = []
     for curve in ring.curves():
         passes += [curve] if layer.clip is None else parts_near(curve, layer.clip, layer.wants)

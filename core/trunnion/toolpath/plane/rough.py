@@ -12,14 +12,19 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
-from trunnion.settings import settings
+from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased
 from trunnion.toolpath.motion.engagement import full_width
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
+from trunnion.toolpath.offsetting.area_clearing import (
+    ClearingLayer,
+    ClearingParameters,
+    clear_area,
+    cut_rims,
+)
 from trunnion.toolpath.offsetting.levels import layers
 from trunnion.toolpath.offsetting.passes import ClearingPasses, passes_over
 from trunnion.toolpath.offsetting.rings import safe_step
@@ -37,12 +42,25 @@ RIDGE = 0.3
 WORTH = 0.2
 """Of a layer: stock that is no higher over it isn't worth a pass in it."""
 
+TALL = 1.0
+"""Radii of the cutter: a strip over a fillet that is taller is cut by a pass of its own; finishing takes lower ones."""
+
+ENTRY = 3.0
+"""degrees: slope of entries into materials that say nothing of it."""
+
 
 @settings("plane.rough")
 class RoughSettings:
     """How a pocket is roughed. Width and depth of cut come with the cutting data, allowances with the drive."""
 
-    ramp_angle: float = choices.ramp_angle(3.0, "Slope of the helix or ramp into full material.")
+    ramp_angle: float = setting(
+        0.0,
+        unit="deg",
+        low=0.0,
+        high=30.0,
+        label="Entry angle",
+        help="Slope of the helix or ramp into full material; 0: what the material bears.",
+    )
     slot_feed: float = choices.slot_feed(
         0.6, "Share of the feed while the whole cutter's width is in material."
     )
@@ -63,7 +81,7 @@ def rough(
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
     parameters = ClearingParameters(
         step=safe_step(tool, data.width, RIDGE),
-        ramp=math.radians(settings.ramp_angle),
+        ramp=math.radians(settings.ramp_angle or data.entry_angle or ENTRY),
         slot=settings.slot_feed * data.slot_share,
     )
     findings: list[Finding] = []
@@ -109,6 +127,9 @@ def rough(
                     parameters,
                     progress,
                 )
+                rim = _over_feet(drive, tool, z)
+                if above - rim > TALL * tool.radius:
+                    _cut_strips(builder, drive, level, rim, parameters, progress)
             above, first = z, False
         if made and not made[max(made)].axis_region.region:
             findings.append(_too_wide(drive, level, tool))
@@ -122,6 +143,40 @@ def rough(
     return Planned(
         path=eased(builder.finished(), tool, data, stock, parameters.slot, progress),
         findings=tuple(findings),
+    )
+
+
+def _over_feet(drive: PlaneDrive, tool: Tool, z: float) -> float:
+    """Return the height from which on no fillet at the foot of walls keeps a cutter off them that it keeps off at a height."""
+    gap = drive.fillet - tool.corner_radius
+    return max(
+        (f.z + gap for f in drive.floors if 0.0 <= z - f.z + tolerance.SEW < gap), default=math.inf
+    )
+
+
+def _cut_strips(
+    builder: PathBuilder,
+    drive: PlaneDrive,
+    level: DriveLevel,
+    z: float,
+    parameters: ClearingParameters,
+    progress: Progress,
+) -> None:
+    """Cut what stands on walls over the fillets at their feet, which have kept the cutter off all the layer's height."""
+    distance = builder.tool.radius + drive.wall_allowance + _foot(drive, builder.tool, z)
+    passes = passes_over(
+        level.wanted,
+        level.boundary,
+        builder.tool,
+        distance,
+        parameters.step,
+        mitred=drive.fillet > 0.0,
+    )
+    cut_rims(
+        builder,
+        ClearingLayer(z=z, rings=passes.rings, axis_region=passes.axis_region, clip=passes.clip),
+        parameters,
+        progress,
     )
 
 
