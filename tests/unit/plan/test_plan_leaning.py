@@ -82,7 +82,9 @@ def test_its_waterlines_finish_every_side_with_an_end_that_fits_the_fillet() -> 
 
 def test_steps_of_layers_stand_out_of_a_leaning_wall_by_no_more_than_is_wanted() -> None:
     rough = operations("away")["rough-pocket-01"]
-    assert rough.data.depth * math.tan(math.radians(5.0)) <= 0.5 + 1e-9
+    step = rough.choices["surface.layer"]
+    assert isinstance(step, float) and step < rough.data.depth
+    assert step * math.tan(math.radians(5.0)) <= 0.5 + 1e-9
 
 
 def test_layers_keep_the_allowance_off_all_that_stands_at_their_height_or_over_it() -> None:

@@ -12,6 +12,8 @@ SCALLOP, ALLOWANCE, BOTTOM, CELL = (
 )
 """Keys of an operation's choices, mm: the scallop height it is wanted with, what it leaves on purpose, the height in the cutting frame that
 it goes down to, and the distance of the positions at which the part's height is measured."""
+LAYER = "surface.layer"
+"""Key of an operation's choices: height in mm of the steps that roughing leaves on slopes; where it is not said, its depth of cut."""
 EXTENSION = "surface.extension"
 """Key of an operation's choices: how far in mm its passes run on past free rims."""
 OVERHANG = "surface.overhang"

@@ -6,7 +6,7 @@ from trunnion.findings import error
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
 from trunnion.plan.freeform.cutters.choice import named
-from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL
+from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, LAYER
 from trunnion.plan.freeform.lands import LAND, REST_LAND
 from trunnion.plan.freeform.reach import samples_on
 from trunnion.plan.freeform.roughing.hollows import hollow_depths
@@ -139,18 +139,21 @@ def _add_rough(
     *why: str,
 ) -> None:
     stage, settings, cutting = state.stages[kind], state.settings, choose(CuttingSettings, {})
-    depth = min(settings.layer, roughing_depth(tool, state.material, cutting))
+    depth = roughing_depth(tool, state.material, cutting)
+    layer = min(settings.layer, depth)
     width = roughing_width(tool, state.material, cutting)
     rules = (
         stage.rule,
         f"{tool.name}: reaches {trimmed(depth_reached(tool), 1)} mm deep.",
         *why,
-        f"It leaves {trimmed(settings.rough_allowance, 2)} mm all round, in layers of {trimmed(depth, 2)} mm.",
+        f"It leaves {trimmed(settings.rough_allowance, 2)} mm all round, in layers of up to {trimmed(depth, 2)} mm and "
+        f"steps of {trimmed(layer, 2)} mm up the slopes.",
     )
     choices: dict[str, Value] = {
         ALLOWANCE: settings.rough_allowance,
         BOTTOM: bottom,
         CELL: settings.cell,
+        LAYER: layer,
     }
     state.add(
         kind,

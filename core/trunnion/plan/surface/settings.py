@@ -59,7 +59,7 @@ class SurfaceRouteSettings:
         low=0.05,
         high=50.0,
         label="Roughing layer",
-        help="Height of the layers that roughing goes down by: the steps it leaves are as high.",
+        help="Height of the steps that roughing leaves on slopes, after layers as deep as material and cutter bear.",
     )
     rough_allowance: float = setting(
         0.3,

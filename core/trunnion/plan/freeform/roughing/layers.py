@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,7 +16,7 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import StockHeights
-from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, number
+from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, LAYER, number
 from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
 from trunnion.plan.freeform.outline import outline_drive
 from trunnion.plan.freeform.roughing.heights import (
@@ -38,6 +39,8 @@ POCKET_SAMPLES = 240_000
 """Positions of a pocket's map, which is made once for all of its operations: about four seconds of dropping."""
 WORTH = 0.2
 """Of a layer: stock that is no higher over it isn't worth a pass in it."""
+HAIR = 0.05
+"""mm: half the width up to which what is left of a step is nothing."""
 RIM = 2.0
 """Cells of the stock that walls keep high though everything beside them is cut."""
 
@@ -171,23 +174,39 @@ def layers_of(
 
     `level` are the heights of level faces, which end a layer; `free_at` returns where nothing of the part with its allowance is at a height
     or over it, within a `box` with corners (3,). A layer that nothing is over wants nothing.
+
+    Layers are as thick as the depth of cut. From the bottom of each upwards what its cutter couldn't come to on slopes is then cut in steps
+    (choice `LAYER`), each from the side that is cut already: every place is cut once on the way down and once on the way up, not at every
+    step.
     """
     allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
-    top = float(stock.heights.max())
+    top, radius = float(stock.heights.max()), operation.cutter.radius
     blank, around = space.blank_area(), space.around()
+    depth = operation.data.depth
+    step = min(number(operation, LAYER) or depth, depth)
     levels = []
-    for above, z in pairwise([top, *_heights(level, top, bottom, operation.data.depth, allowance)]):
-        progress.check()
-        free = free_at(z)
-        # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
-        wanted = (
-            free.intersect(blank)
-            .intersect(stock_over(stock, z, above, box))
-            .opened(0.5 * RIM * stock.cell)
-        )
-        levels.append(
-            DriveLevel(top=above, bottom=z, wanted=wanted, boundary=free if wanted else around)
-        )
+    for above, steps in layer_groups(top, _heights(level, top, bottom, step, allowance), depth):
+        cleared = EMPTY_REGION
+        for below, z in pairwise([*reversed(steps), above]):
+            progress.check()
+            free = free_at(below)
+            # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
+            wanted = (
+                free.intersect(blank)
+                .intersect(stock_over(stock, below, z, box))
+                .opened(0.5 * RIM * stock.cell)
+            )
+            if cleared and wanted:
+                wanted = wanted.minus(cleared).opened(HAIR)
+                # What is left goes on into what is cleared, so that it is entered from there.
+                wanted = wanted.offset(0.5 * radius).intersect(free) if wanted else wanted
+            axis_region = free.offset(-radius)
+            cleared = axis_region.offset(radius + HAIR) if axis_region else cleared
+            levels.append(
+                DriveLevel(
+                    top=above, bottom=below, wanted=wanted, boundary=free if wanted else around
+                )
+            )
     return PlaneDrive(
         feature=operation.feature,
         kind=operation.kind,
@@ -195,6 +214,24 @@ def layers_of(
         stock_top=top,
         faces=operation.faces,
     )
+
+
+def layer_groups(
+    top: float, heights: Sequence[float], depth: float
+) -> list[tuple[float, list[float]]]:
+    """Return heights from the top down in groups no thicker than a depth, each with the height that it begins at; groups are as even as
+    the heights allow."""
+    count = max(1, math.ceil((top - heights[-1]) / depth - tolerance.COINCIDENT)) if heights else 1
+    even = (top - heights[-1]) / count if heights else depth
+    groups: list[tuple[float, list[float]]] = []
+    above, group = top, list[float]()
+    for n, z in enumerate(heights):
+        group.append(z)
+        last = n + 1 == len(heights)
+        if last or above - heights[n + 1] > even * (1.0 + tolerance.PARAMETRIC):
+            groups.append((above, group))
+            above, group = z, []
+    return groups
 
 
 def _heights(

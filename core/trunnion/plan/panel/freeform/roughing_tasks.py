@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.milling import CuttingSettings, roughing_depth, roughing_width
-from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL
+from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, LAYER
 from trunnion.plan.panel.freeform.planning import (
     FreeformPlanning,
     kept_off,
@@ -104,8 +105,9 @@ def _layers(
     layer = layer_height(pocket, settings)
 
     def engagement(tool: Tool) -> tuple[float, float]:
-        depth = roughing_depth(tool, state.material, cutting)
-        return min(depth, layer), roughing_width(tool, state.material, cutting)
+        return roughing_depth(tool, state.material, cutting), roughing_width(
+            tool, state.material, cutting
+        )
 
     return pocket_task(
         state,
@@ -119,6 +121,7 @@ def _layers(
             # Lower than the lowest floor's allowance only holes in it are free.
             BOTTOM: pocket.bottom + (0.0 if pocket.curved else state.settings.floor_allowance),
             CELL: settings.cell,
+            **({LAYER: layer} if math.isfinite(layer) else {}),
         },
         engagement,
     )
