@@ -89,6 +89,7 @@ def test_what_is_not_used_leaves_digests_and_json_as_they_were():
         "spindle_mode",
         "highest_spindle",
         "feed_mode",
+        "entry_angle",
         "handbook_spindle",
         "handbook_feed",
         "bound_by",

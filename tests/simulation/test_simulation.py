@@ -88,10 +88,10 @@ def test_a_point_of_a_finished_plate_that_lies_lower_is_a_gouge(plate):
     assert {(fault.what, fault.operation) for fault in report.faults} == {("gouge", operation)}
 
 
-@pytest.mark.parametrize("program", ["panel", "plate"])
-def test_a_rapid_that_comes_down_too_far_is_in_stock(program, request):
+@pytest.mark.parametrize(("program", "kind"), [("panel", "rough"), ("plate", "finish")])
+def test_a_rapid_that_comes_down_too_far_is_in_stock(program, kind, request):
     program = request.getfixturevalue(program)
-    report = report_of(program, mutations.dived(program.text, program.operation("rough"), 3.0))
+    report = report_of(program, mutations.dived(program.text, program.operation(kind), 3.0))
     assert "rapid" in report.kinds()
 
 

@@ -128,9 +128,9 @@ def test_a_header_that_names_a_tool_of_a_thousand_digits_is_refused_in_a_short_l
         ("G1 A31 F1000", "line 8: A31 is out of range; allowed is -120 to 30 degrees"),
         (
             "G1 C1000000000 F1000",
-            "line 8: C1000000000 is out of range; allowed is -99999 to 99999 degrees",
+            "line 8: C1000000000 is out of range; allowed is -9999999 to 9999999 degrees",
         ),
-        (f"G0 C{MANY}", "line 8: Cinf is out of range; allowed is -99999 to 99999 degrees"),
+        (f"G0 C{MANY}", "line 8: Cinf is out of range; allowed is -9999999 to 9999999 degrees"),
         (
             "G1 C99999 F100",
             "line 8: C turns by 99999 degrees in one block, at most 3600 are understood; write several",
