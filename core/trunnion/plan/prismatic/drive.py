@@ -84,7 +84,8 @@ class WallGuide:
 class PlaneDrive:
     """All that a plane strategy needs to know of the geometry.
 
-    `levels` go down from the top and touch each other. `floors` and `walls` carry the finished heights. `fillet`: the largest radius at
+    `levels` go down from the top and touch each other, except those that go up again to what the one before them had to leave over its
+    bottom: their `top` is that one's. `floors` and `walls` carry the finished heights. `fillet`: the largest radius at
     the foot of the walls. A cutter with corner radius rc < fillet whose tip is t above a floor must keep
     e = (rf - rc) - sqrt((rf - rc)^2 - (rf - rc - t)^2) more than its radius from the wall while t < rf - rc, with rf the fillet
     (`foot_clearance`); a corner radius of rf comes out exactly. `stock_top`: the height of the material over the feature when the
