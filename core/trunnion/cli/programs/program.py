@@ -26,6 +26,12 @@ if TYPE_CHECKING:
     from trunnion.progress import Progress
 
 
+LAID, PROVEN = "toolpath", "repair"
+"""The steps that toolpaths are there after, and that a program is proven after."""
+LAYING = (0.1, 0.6)
+"""Shares of the whole work at which the part is read, and at which toolpaths are there."""
+
+
 def add(commands: Any) -> None:
     """Add the command to the command line."""
     made = part_command(
@@ -41,12 +47,6 @@ def add(commands: Any) -> None:
         help="date for the programs' headers; without it same input gives same bytes",
     )
     made.set_defaults(run=run)
-
-
-LAID, PROVEN = "toolpath", "repair"
-"""The steps that toolpaths are there after, and that a program is proven after."""
-LAYING = (0.1, 0.6)
-"""Shares of the whole work at which the part is read, and at which toolpaths are there."""
 
 
 def run(options: argparse.Namespace) -> int:

@@ -142,7 +142,8 @@ def roughing_depth(tool: Tool, material: Material, settings: CuttingSettings) ->
 
 
 def layer_depth(tool: Tool, material: Material, settings: CuttingSettings) -> float:
-    """Return the depth in mm of layers that a cutter bears whose strategy opens them by slots at a feed that the spindle bears."""
+    """Return the depth in mm of layers that a cutter bears: as deep as a slot may be, where a strategy opens them by slots at a feed that
+    the spindle bears, or comes to them from outside."""
     return _depth(material.deepest_factor, tool, settings)
 
 

@@ -71,7 +71,7 @@ FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
 
 
 LAYERED = ("rough", "profile_rough")
-"""Kinds of operations in layers that contour-parallel passes open: their feeds are eased where a slot is cut."""
+"""Kinds of operations in layers by contour-parallel passes: they slow down in the slots that open a layer, or come from outside."""
 HOLE_MILLING = (BORE, FLOOR, COUNTERBORE)
 """Kinds of operations that mill holes along helices."""
 HELIX_DEPTH = 0.2

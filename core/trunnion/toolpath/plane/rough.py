@@ -101,16 +101,7 @@ def rough(
                 f"{drive.feature}: layer at {z:.3f}",
             )
             distance = tool.radius + drive.wall_allowance + _foot(drive, tool, z)
-            if distance not in made:
-                made[distance] = passes_over(
-                    level.wanted,
-                    level.boundary,
-                    tool,
-                    distance,
-                    parameters.step,
-                    mitred=drive.fillet > 0.0,
-                )
-            passes = made[distance]
+            passes = _passes(made, drive, level, tool, distance, parameters.step)
             if passes.rings and not _is_cleared(builder, level.wanted, z):
                 known = None if first or passes.clip is not None else above
                 clear_area(
@@ -129,7 +120,20 @@ def rough(
                 )
                 rim = _over_feet(drive, tool, z)
                 if above - rim > TALL * tool.radius:
-                    _cut_strips(builder, drive, level, rim, parameters, progress)
+                    # Strips stand on walls over fillets that have kept the cutter off all the layer's height.
+                    beside = tool.radius + drive.wall_allowance + _foot(drive, tool, rim)
+                    strips = _passes(dict(made), drive, level, tool, beside, parameters.step)
+                    cut_rims(
+                        builder,
+                        ClearingLayer(
+                            z=rim,
+                            rings=strips.rings,
+                            axis_region=strips.axis_region,
+                            clip=strips.clip,
+                        ),
+                        parameters,
+                        progress,
+                    )
             above, first = z, False
         if made and not made[max(made)].axis_region.region:
             findings.append(_too_wide(drive, level, tool))
@@ -154,30 +158,20 @@ def _over_feet(drive: PlaneDrive, tool: Tool, z: float) -> float:
     )
 
 
-def _cut_strips(
-    builder: PathBuilder,
+def _passes(
+    made: dict[float, ClearingPasses],
     drive: PlaneDrive,
     level: DriveLevel,
-    z: float,
-    parameters: ClearingParameters,
-    progress: Progress,
-) -> None:
-    """Cut what stands on walls over the fillets at their feet, which have kept the cutter off all the layer's height."""
-    distance = builder.tool.radius + drive.wall_allowance + _foot(drive, builder.tool, z)
-    passes = passes_over(
-        level.wanted,
-        level.boundary,
-        builder.tool,
-        distance,
-        parameters.step,
-        mitred=drive.fillet > 0.0,
-    )
-    cut_rims(
-        builder,
-        ClearingLayer(z=z, rings=passes.rings, axis_region=passes.axis_region, clip=passes.clip),
-        parameters,
-        progress,
-    )
+    tool: Tool,
+    distance: float,
+    step: float,
+) -> ClearingPasses:
+    """Return the passes over a band whose axes keep a distance from its walls: one of those made before, or a new one among them."""
+    if distance not in made:
+        made[distance] = passes_over(
+            level.wanted, level.boundary, tool, distance, step, mitred=drive.fillet > 0.0
+        )
+    return made[distance]
 
 
 def _horizontals(drive: PlaneDrive, row: int) -> list[float]:

@@ -187,13 +187,13 @@ def layers_of(
     levels = []
     for above, steps in layer_groups(top, _heights(level, top, bottom, step, allowance), depth):
         cleared = EMPTY_REGION
-        for below, z in pairwise([*reversed(steps), above]):
+        for z, next_up in pairwise([*reversed(steps), above]):
             progress.check()
-            free = free_at(below)
+            free = free_at(z)
             # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
             wanted = (
                 free.intersect(blank)
-                .intersect(stock_over(stock, below, z, box))
+                .intersect(stock_over(stock, z, next_up, box))
                 .opened(0.5 * RIM * stock.cell)
             )
             if cleared and wanted:
@@ -203,9 +203,7 @@ def layers_of(
             axis_region = free.offset(-radius)
             cleared = axis_region.offset(radius + HAIR) if axis_region else cleared
             levels.append(
-                DriveLevel(
-                    top=above, bottom=below, wanted=wanted, boundary=free if wanted else around
-                )
+                DriveLevel(top=above, bottom=z, wanted=wanted, boundary=free if wanted else around)
             )
     return PlaneDrive(
         feature=operation.feature,
