@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from multiprocessing.context import ForkServerContext, ForkServerProcess
+from pathlib import Path
 from types import SimpleNamespace
 from typing import IO, Any
 
@@ -43,7 +45,15 @@ WARM.set_forkserver_preload(list(MODULES))
 class WarmReader:
     """Stands in for `subprocess.Popen` of `python -m trunnion.part.read.child FOLDER`."""
 
-    def __init__(self, command: list[str], *, stdout: IO[bytes], **_: Any) -> None:
+    def __init__(
+        self, command: list[str], *, stdout: IO[bytes], stdin: int | None, **_: Any
+    ) -> None:
+        self.stdin: IO[bytes] | None = None
+        requests = Path(command[-1], "requests")
+        if stdin == READERS.PIPE:
+            # Processes that are forked beforehand inherit no pipes: one with a name stands in.
+            os.mkfifo(requests)
+            self.stdin = os.fdopen(os.open(requests, os.O_RDWR), "wb")
         self._process = WARM.Process(target=_read, args=(command[-1], stdout.name))
         self._process.start()
         self.returncode: int | None = None
@@ -60,7 +70,7 @@ class WarmReader:
         self.poll()
 
 
-READERS = SimpleNamespace(Popen=WarmReader, DEVNULL=None)
+READERS = SimpleNamespace(Popen=WarmReader, DEVNULL=None, PIPE=-1)
 """Stands in for `subprocess` where a part is read."""
 
 
@@ -71,4 +81,7 @@ def _read(folder: str, words: str) -> None:
     with open(words, "ab") as file:
         for stream in (1, 2):
             os.dup2(file.fileno(), stream)
+    requests = Path(folder, "requests")
+    if requests.exists():
+        sys.stdin = requests.open(encoding="utf-8")
     os._exit(main(folder))

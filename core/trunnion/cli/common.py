@@ -128,9 +128,15 @@ def progress_of(options: argparse.Namespace) -> Progress:
 
 
 def open_session(
-    options: argparse.Namespace, until: str | None, ahead: Ahead | None = None
+    options: argparse.Namespace,
+    until: str | None,
+    ahead: Ahead | None = None,
+    running: ExitStack | None = None,
 ) -> tuple[Engine, Session]:
-    """Return the engine and the session of the part, with every step up to `until` done; `ahead` draws the plan's pictures."""
+    """Return the engine and the session of the part, with every step up to `until` done; `ahead` draws the plan's pictures.
+
+    The process that reads the part stays while the caller is `running`, and does work on it beside.
+    """
     if options.user_folder is not None and not options.user_folder.is_dir():
         raise BadInput(
             f"{options.user_folder}: no such folder of tools, materials, machines and plans"
@@ -139,7 +145,9 @@ def open_session(
     with ExitStack() as begun:
         reading = None
         if Path(options.part).suffix.lower() != PROJECT_SUFFIX:
-            reading = begun.enter_context(PartReading.of_file(options.part, solid=options.solid))
+            reading = (running or begun).enter_context(
+                PartReading.of_file(options.part, solid=options.solid, stays=running is not None)
+            )
         # While a process of its own reads the part, the program is loaded, and with its settings all families.
         from trunnion.pipeline import Engine
 

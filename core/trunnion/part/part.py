@@ -21,6 +21,7 @@ from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.plane.region import Region
 from trunnion.geometry.surface.curvature import FaceCurvature
 from trunnion.part.topology.identity import Shape, faces_of
+from trunnion.part.work import MeshWork, PartWork, PartWorker
 from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
@@ -101,6 +102,7 @@ class Part:
         self._bends: dict[int, FaceCurvature] = {}
         self._slicer: Any = None
         self._progress = NO_PROGRESS
+        self._beside: PartWorker | None = None
 
     path = property(lambda self: self.facts.path, doc="Where the part was read from.")
     name = property(lambda self: self.facts.name, doc="The file's name without its suffix.")
@@ -158,6 +160,20 @@ class Part:
         finally:
             self._progress = before
 
+    def accompanied(self, beside: PartWorker) -> Part:
+        """Return this part, which lets a process that has it too do work beside."""
+        self._beside = beside
+        return self
+
+    def begin(self, work: PartWork) -> None:
+        """Let work that will be wanted be done beside; nothing where no other process has the part."""
+        if self._beside is not None:
+            self._beside.begin(work)
+
+    def finished(self, work: PartWork, progress: Progress) -> Any | None:
+        """Return what came of work that was begun, waiting for it; None where it is to be done here."""
+        return self._beside.made(work, progress) if self._beside is not None else None
+
     def face_shape(self, tag: int) -> Shape | None:
         """Return the face of a tag as it lies in the solid (its normal points outward), or None when it is not of this solid."""
         return self._faces.get(tag)
@@ -173,11 +189,12 @@ class Part:
     def mesh(self, chord: float = tolerance.CHORD, angle: float = tolerance.MESH_ANGLE) -> Mesh:
         """Return triangles of the solid within a chord error (mm) and an angle between neighbouring chords (radians)."""
         if (chord, angle) not in self._meshes:
-            from trunnion.part.shape.tessellate import tessellated
+            made = self.finished(MeshWork(chord, angle), self._progress)
+            if made is None:
+                from trunnion.part.shape.tessellate import tessellated
 
-            self._meshes[chord, angle] = tessellated(
-                self.shape, self._faces, chord, angle, self._progress
-            )
+                made = tessellated(self.shape, self._faces, chord, angle, self._progress)
+            self._meshes[chord, angle] = made
         return self._meshes[chord, angle]
 
     def section(self, frame: Frame, z: float) -> Region:

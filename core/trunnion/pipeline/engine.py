@@ -20,6 +20,7 @@ from trunnion.model.repair import words_of
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context, Contexts
 from trunnion.pipeline.execution import run_step
+from trunnion.pipeline.part_work import before_blank
 from trunnion.pipeline.step import Step
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
 from trunnion.plan.operation_change import OperationChange, with_change
@@ -78,6 +79,7 @@ class Engine:
             share = progress.part(0.0, 0.7)
             part = reading.part(share) if reading else read_part(path, solid=solid, progress=share)
             with part.watched(progress.part(0.7, 1.0)):
+                before_blank(part)
                 part.graph()
         self._contexts = Contexts(part, self._shop, self.library)
         self._file = (path.read_bytes(), path.suffix)

@@ -29,7 +29,8 @@ Work = Callable[[Session, Context, Progress], Result]
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
     """One step: name, title, the steps whose results it reads (`after`), the settings it declares and those among them that a session
-    uses (all where `uses` is None), what it reads, the work, and whether its result is there."""
+    uses (all where `uses` is None), what it reads, the work, whether its result is there, and what it then begins that later steps
+    will want of the part (`foresees`)."""
 
     name: str
     title: str
@@ -40,6 +41,7 @@ class Step:
     done: Callable[[Session], bool]
     version: int = 1
     uses: Callable[[Session], tuple[type, ...]] | None = None
+    foresees: Callable[[Session, Context], None] | None = None
 
     def key(self, session: Session, context: Context) -> str:
         """Return the digest of everything the step would be given now."""

@@ -17,6 +17,7 @@ from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.execution import run_step
+from trunnion.pipeline.part_work import before_proof, before_route
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
 from trunnion.pipeline.planning.library import library_choice, library_key, routed
@@ -297,6 +298,7 @@ STEP_TABLE: tuple[Step, ...] = (
             registry.names(PART_KINDS),
         ),
         done=lambda s: s.recognition is not None,
+        foresees=before_route,
         version=2,
     ),
     Step(
@@ -340,6 +342,7 @@ STEP_TABLE: tuple[Step, ...] = (
             *library_key(s, b),
         ),
         done=lambda s: s.process is not None,
+        foresees=before_proof,
     ),
     Step(
         name="optimize",

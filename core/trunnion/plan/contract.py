@@ -202,6 +202,14 @@ class Leaning(Protocol):
     """rad: how far the tool leans from the setup's z axis, all round the part."""
 
 
+@runtime_checkable
+class SkinPlanner(Protocol):
+    """A planner that looks at skins of every part of its family: they can be made before it is asked."""
+
+    skins: tuple[float, ...]
+    """mm: their chord errors, in the order they are wanted."""
+
+
 DriveMaker = Callable[[Operation, DriveNeeds, Scene, Progress], OperationDrive]
 """How a planner makes drives of one class."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
@@ -58,8 +59,8 @@ def run(options: argparse.Namespace) -> int:
     check_output(options.output)
     if options.name:
         checked_name(options.name)
-    with PictureProcess() as pictures:
-        engine, session = open_session(options, None)
+    with PictureProcess() as pictures, ExitStack() as running:
+        engine, session = open_session(options, None, running=running)
         progress = progress_of(options)
         session = engine.run(session, LAID, progress.part(*LAYING), pictures.ahead)
         session = _proven(options, engine, session, progress.part(LAYING[1], 1.0))

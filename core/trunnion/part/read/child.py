@@ -1,50 +1,60 @@
 """The process that reads a part file: a damaged file may crash, bloat or hang the CAD kernel, and then only this process ends.
 
 Started afresh (never forked) as `python -m trunnion.part.read.child FOLDER`. The folder holds the request and the file's bytes; the answer
-is written there.
+is written there. Where it is to stay, it then does work on the part (`part.work`), pickled on its standard input, until that ends.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from dataclasses import asdict
+from itertools import count
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from trunnion.findings import BadInput, OutOfMemory, TrunnionError
 from trunnion.part.read.limits import ReadLimits
 from trunnion.part.read.request import ReadRequest
+from trunnion.part.work import PartWork
 from trunnion.progress import Progress
 
 _LOOK = 0.02
 _CHECK = 0.1
 _REFUSED, _NO_MEMORY = 3, 4
 _MEGA = 1 << 20
+_PART = "result"
 
 
 class ReadingProcess:
-    """A fresh process that reads a part from a file's bytes, within limits, until its `end`."""
+    """A fresh process that reads a part from a file's bytes, within limits, until its `end`; one that stays does work on the part then."""
 
-    def __init__(self, request: ReadRequest, data: bytes, limits: ReadLimits) -> None:
-        self._request, self._limits = request, limits
+    def __init__(
+        self, request: ReadRequest, data: bytes, limits: ReadLimits, stays: bool = False
+    ) -> None:
+        self._request, self._limits, self._stays = request, limits, stays
+        self._begun: dict[PartWork, Path] = {}
         self._folder = tempfile.TemporaryDirectory(prefix="trunnion-read-")
         directory = Path(self._folder.name)
         (directory / "part").write_bytes(data)
         (directory / "request.json").write_text(
-            json.dumps({"request": asdict(request), "memory": limits.memory}), encoding="utf-8"
+            json.dumps({"request": asdict(request), "memory": limits.memory, "stays": stays}),
+            encoding="utf-8",
         )
         self._began = time.monotonic()
         with (directory / "words").open("wb") as words:
             # -P: nothing is imported from the folder that the program happens to be started in.
             self._child = subprocess.Popen(
                 [sys.executable, "-P", "-m", "trunnion.part.read.child", self._folder.name],
-                stdin=subprocess.DEVNULL,
+                stdin=subprocess.PIPE if stays else subprocess.DEVNULL,
                 stdout=words,
                 stderr=words,
                 env=os.environ | {"PYTHONIOENCODING": "utf-8"},
@@ -54,20 +64,50 @@ class ReadingProcess:
         """End the process, at whatever it is, and remove its files."""
         self._child.kill()
         self._child.wait()
+        if self._stays:
+            # What was written to it and not read is lost with it.
+            assert self._child.stdin is not None
+            with suppress(BrokenPipeError):
+                self._child.stdin.close()
         self._folder.cleanup()
 
     def response(self, progress: Progress) -> bytes:
         """Return the bytes of the part (`Part.to_bytes`) once it is read."""
         self._wait(progress)
-        return _response(
-            self._child.returncode, Path(self._folder.name), self._request, self._limits
-        )
+        code = 0 if self._has_read() else self._child.returncode
+        return _response(code, Path(self._folder.name), self._request, self._limits)
+
+    def begin(self, work: PartWork) -> None:
+        """Let the process do some work on the part it has read, after what was begun before; nothing where it doesn't stay or has ended."""
+        if not self._stays or work in self._begun:
+            return
+        requests = self._child.stdin
+        assert requests is not None
+        with suppress(BrokenPipeError, ValueError):
+            pickle.dump(work, requests, protocol=pickle.HIGHEST_PROTOCOL)
+            requests.flush()
+            self._begun[work] = Path(self._folder.name) / f"work-{len(self._begun)}"
+
+    def made(self, work: PartWork, progress: Progress) -> Any | None:
+        """Return what came of some work, waiting for it; None where it was not begun or failed: then it is to be done here."""
+        file = self._begun.get(work)
+        if file is None:
+            return None
+        while not file.is_file():
+            if self._child.poll() is not None and not file.is_file():
+                return None
+            progress.check()
+            time.sleep(_LOOK)
+        return pickle.loads(file.read_bytes())
+
+    def _has_read(self) -> bool:
+        return self._stays and (Path(self._folder.name) / _PART).is_file()
 
     def _wait(self, progress: Progress) -> None:
         file, limit = self._request.file, self._limits.seconds
         looked = self._began
         progress.aside(lambda _: _load(), f"reading {file}")
-        while self._child.poll() is None:
+        while self._child.poll() is None and not self._has_read():
             now = time.monotonic()
             if now - self._began > limit:
                 raise BadInput(
@@ -96,8 +136,8 @@ def _load() -> None:
 
 def _response(code: int, directory: Path, request: ReadRequest, limits: ReadLimits) -> bytes:
     refusal = directory / "refused"
-    if code == 0 and (directory / "answer").is_file():
-        return (directory / "answer").read_bytes()
+    if code == 0 and (directory / _PART).is_file():
+        return (directory / _PART).read_bytes()
     if code == _REFUSED and refusal.is_file():
         raise BadInput(refusal.read_text(encoding="utf-8"))
     last = (directory / "words").read_bytes()[-4096:]
@@ -118,14 +158,43 @@ def main(folder: str) -> int:
     try:
         from trunnion.part.read.transfer import read_file
 
-        part = read_file(directory / "part", ReadRequest(**order["request"]))
-        (directory / "answer").write_bytes(part.to_bytes())
+        data = read_file(directory / "part", ReadRequest(**order["request"])).to_bytes()
     except TrunnionError as reason:
         (directory / "refused").write_text(str(reason), encoding="utf-8")
         return _REFUSED
     except MemoryError:
         return _NO_MEMORY
+    _write_whole(directory / _PART, data)
+    if order["stays"]:
+        _work_on(data, directory)
     return 0
+
+
+def _work_on(data: bytes, directory: Path) -> None:
+    """Do work on a part, given as bytes, as long as some is asked for; what fails is answered with None."""
+    from trunnion.part.part import Part
+
+    # The part as the other process has it, so that both would make the same of it.
+    part = Part.from_bytes(data)
+    for number in count():
+        try:
+            work: PartWork = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        made = None
+        # The other process does itself what fails here, and says why it can't.
+        with suppress(TrunnionError, MemoryError):
+            made = work.done(part)
+        _write_whole(
+            directory / f"work-{number}", pickle.dumps(made, protocol=pickle.HIGHEST_PROTOCOL)
+        )
+
+
+def _write_whole(file: Path, data: bytes) -> None:
+    """Write a file that is there only once it is whole."""
+    begun = file.with_suffix(".begun")
+    begun.write_bytes(data)
+    begun.replace(file)
 
 
 def limit_memory(megabytes: int) -> None:

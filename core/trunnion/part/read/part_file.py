@@ -56,10 +56,19 @@ def read_part_bytes(
 
 
 class PartReading:
-    """The reading of a part file by a process of its own, from its beginning on; used in a `with` block, at whose end it is over."""
+    """The reading of a part file by a process of its own, from its beginning on; used in a `with` block, at whose end it is over.
+
+    A process that stays does work on the part beside, until the end of the block.
+    """
 
     def __init__(
-        self, data: bytes, file: str, path: str, solid: int | None, limits: ReadLimits
+        self,
+        data: bytes,
+        file: str,
+        path: str,
+        solid: int | None,
+        limits: ReadLimits,
+        stays: bool = False,
     ) -> None:
         """Begin to read the part of a file's bytes; raises `BadInput` where they are no part file's."""
         plain = _unpacked(data, file, limits)
@@ -75,7 +84,7 @@ class PartReading:
             solid=solid,
             size=len(plain),
         )
-        self._process = ReadingProcess(request, plain, limits)
+        self._process, self._stays = ReadingProcess(request, plain, limits, stays), stays
 
     @staticmethod
     def of_file(
@@ -83,10 +92,11 @@ class PartReading:
         *,
         solid: int | None = None,
         limits: ReadLimits | None = None,
+        stays: bool = False,
     ) -> PartReading:
         """Begin to read a part file; raises `BadInput` for a file that is none."""
         limits, file = limits or ReadLimits(), Path(path)
-        return PartReading(_bytes_of(file, limits), file.name, str(file), solid, limits)
+        return PartReading(_bytes_of(file, limits), file.name, str(file), solid, limits, stays)
 
     def part(self, progress: Progress = NO_PROGRESS) -> Part:
         """Return the part once it is read; raises what `read_part` does."""
@@ -95,7 +105,8 @@ class PartReading:
         # The CAD kernel takes a second to load: the process that reads the file has been at work meanwhile.
         from trunnion.part.part import Part
 
-        return Part.from_bytes(read)
+        part = Part.from_bytes(read)
+        return part.accompanied(self._process) if self._stays else part
 
     def __enter__(self) -> PartReading:
         return self

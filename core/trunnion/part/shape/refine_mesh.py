@@ -17,6 +17,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.findings import BadInput, OutOfMemory
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.part.work import RefinedMeshWork
 from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
@@ -80,6 +81,11 @@ def opened(
             face=np.zeros(0, np.int64),
             bound=np.zeros(0),
         )
+    made: RefinedMesh | None = part.finished(
+        RefinedMeshWork(tuple(sorted(chords.items()))), progress
+    )
+    if made is not None:
+        return made
     BRepTools.Clean_s(part.shape)
     try:
         net = _coarse(part, tags, np.array([chords[tag] for tag in tags]), progress.part(0.0, 0.3))

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from trunnion import tolerance
 from trunnion.findings import Finding, Severity
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
@@ -51,6 +52,7 @@ class CasingPlanner:
     name, noun = "casing", "casings"
     settings: tuple[type, ...] = (RouteSettings, CasingRouteSettings, TurningSettings)
     cutter_rules: tuple[str, ...] = CUTTER_RULES
+    skins: tuple[float, ...] = (tolerance.CHORD, tolerance.SKIN_CHORD)
     lean = math.radians(LEAN)
 
     def principal_sizes(self, sizes: Sequence[SizeEntry]) -> Mapping[str, float]:

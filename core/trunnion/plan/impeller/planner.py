@@ -40,6 +40,7 @@ class ImpellerPlanner:
     name, noun = "impeller", "impellers"
     settings: tuple[type, ...] = (RouteSettings, ImpellerRouteSettings)
     cutter_rules: tuple[str, ...] = CUTTER_RULES
+    skins: tuple[float, ...] = (tolerance.CHORD,)
     lean = math.radians(LEAN)
 
     def can_plan(self, part: Part) -> None:

@@ -30,6 +30,7 @@ class SurfacePlanner:
     name, noun = "surface", "parts of curved surfaces"
     settings: tuple[type, ...] = (RouteSettings, SurfaceRouteSettings)
     cutter_rules: tuple[str, ...] = CUTTER_RULES
+    skins: tuple[float, ...] = (tolerance.CHORD, tolerance.SKIN_CHORD)
 
     def can_plan(self, part: Part) -> None:
         """Raise `BadInput` for faces that enclose no material."""
