@@ -72,6 +72,31 @@ class Development:
             axis=-1,
         )
 
+    def at(self, along: Floats, turns: Floats) -> Floats:
+        """Return the plane's points u, v (..., 2) at places along the straight lines and angles (rad) about the axis from its middle."""
+        across, _ = self._along
+        if abs(across) < CYLINDRICAL:
+            return np.stack([self.radius * turns, along], axis=-1)
+        apex = self.radius / across
+        return np.stack(
+            [
+                (apex + along) * np.sin(turns * across),
+                (apex + along) * np.cos(turns * across) - apex,
+            ],
+            axis=-1,
+        )
+
+    def nearest_tip(self, start: Floats, end: Floats) -> Floats:
+        """Return the places (k,) along the straight lines where straight ways over the plane, from points to others (k, 3), come nearest to
+        a cone's tip; of a cylinder's plane, where they end."""
+        across, _ = self._along
+        if abs(across) < CYLINDRICAL:
+            return np.asarray(end[:, 1])
+        a, way = start[:, :2] + [0.0, self.radius / across], end[:, :2] - start[:, :2]
+        square = np.maximum((way * way).sum(axis=1), np.finfo(float).tiny)
+        share = np.clip(-(a * way).sum(axis=1) / square, 0.0, 1.0)
+        return self.along_and_turn(start + share[:, None] * (end - start))[0]
+
     def to_world(self, flat: Floats) -> Floats:
         """Return points (..., 3) in the part's coordinates of u, v, h."""
         across, along = self._along

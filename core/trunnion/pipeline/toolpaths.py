@@ -29,6 +29,7 @@ from trunnion.plan.turning.drive import RevolvedDrive
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
+from trunnion.toolpath.motion.ground_rapids import over_ground
 from trunnion.toolpath.motion.load import LoadStock, PathLoad
 from trunnion.toolpath.motion.reorient import clearance_sphere, led_away, moved_over
 from trunnion.toolpath.motion.rolled import laid_flat, rolled
@@ -153,7 +154,12 @@ def _make_one(
             sphere = clearance_sphere(scene.blank, scene.setup)
             own = scene.setup.frame
             path = (
-                rolled(planned.path, rolling.development, own, rolling.chord)
+                rolled(
+                    over_ground(planned.path, rolling, setup.clearance),
+                    rolling.development,
+                    own,
+                    rolling.chord,
+                )
                 if rolling
                 else turned(planned.path, setup.frame, own)
             )

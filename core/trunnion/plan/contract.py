@@ -140,7 +140,8 @@ class Drive(Protocol):
 class RollingGround:
     """Ground that a path is rolled onto: its development, the chord error (mm) of feeds, and the corners (2,) of the plane's box that the
     stock over it is known in. `profile` (k, 2): places along the straight lines and how high the blank is there. `widths`: the share of its
-    width that a straight cutter still has over the plane at the top of what is cut there."""
+    width that a straight cutter still has over the plane at the top of what is cut there. `known`: the places along the straight lines
+    between which all is known that stands there."""
 
     development: Development
     chord: float
@@ -148,6 +149,7 @@ class RollingGround:
     high: Floats
     profile: Floats
     widths: float
+    known: tuple[float, float] = (-math.inf, math.inf)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

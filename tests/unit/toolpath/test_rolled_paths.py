@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from milling import SETUP, mill
 from trunnion.findings import Refused
@@ -14,6 +16,7 @@ from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Revolved
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.plan.contract import RollingGround
+from trunnion.toolpath.motion.ground_rapids import over_ground
 from trunnion.toolpath.motion.rolled import laid_flat, rolled
 from trunnion.toolpath.stock.views import StockViews
 
@@ -86,6 +89,74 @@ def test_a_flat_arc_wider_than_a_cone_is_long_keeps_to_its_chord_error() -> None
     tips = rolled(path, cone, WORLD, 0.05).position
     middle = cone.to_local(0.5 * (tips[1:] + tips[:-1]))
     assert len(tips) > 3 and middle[:, 2].min() >= -0.05 - 1e-9
+
+
+def on_cone(
+    cone: Development, places: list[tuple[float, float, float]], known: tuple[float, float]
+) -> tuple[Toolpath, RollingGround]:
+    """Return rapids between places (along, turn, height) on a cone, and the ground between places that are known."""
+    along, turns, height = np.array(places).T
+    flat = np.column_stack([cone.at(along, turns), height])
+    ground = RollingGround(
+        development=cone,
+        chord=0.01,
+        low=flat[:, :2].min(axis=0),
+        high=flat[:, :2].max(axis=0),
+        profile=np.array([[known[0], 10.0], [known[1], 10.0]]),
+        widths=1.0,
+        known=known,
+    )
+    return flat_path([(*row, Motion.RAPID) for row in flat.tolist()]), ground
+
+
+def test_a_rapid_between_places_far_round_a_cone_stays_over_its_ground() -> None:
+    """Straight over the plane it came 50 mm out of the ground, through the flange below."""
+    cone = Development(frame=WORLD, radius=275.0, height=170.0, slope=0.2126, middle=0.0)
+    path, ground = on_cone(cone, [(2.0, -1.0, 12.0), (20.0, 2.0, 12.0)], (-20.0, 160.0))
+    straight, round_ = (
+        cone.to_local(rolled(p, cone, WORLD, 0.01).position)
+        for p in (path, over_ground(path, ground, 25.0))
+    )
+    assert cone.along_and_turn(straight)[0].min() < -50.0
+    along, _ = cone.along_and_turn(round_)
+    assert along.min() > 1.5 and along.max() < 20.5
+    assert round_[[0, -1]] == pytest.approx(path.position, abs=1e-6)
+    assert round_[1:-1, 2] == pytest.approx(25.0, abs=0.5)
+
+
+def test_a_rapid_that_stays_over_its_ground_goes_straight() -> None:
+    cone = Development(frame=WORLD, radius=275.0, height=170.0, slope=0.2126, middle=0.0)
+    path, ground = on_cone(cone, [(60.0, -0.4, 12.0), (60.0, 0.4, 12.0)], (-20.0, 160.0))
+    assert over_ground(path, ground, 25.0) is path
+    flat, on_cylinder = on_cone(GROUND, [(0.0, -3.0, 12.0), (9.0, 3.0, 12.0)], (-1.0, 10.0))
+    assert over_ground(flat, on_cylinder, 25.0) is flat
+
+
+@given(
+    slope=st.floats(-0.8, 0.8).filter(lambda s: abs(s) > 0.01),
+    turns=st.tuples(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1)),
+    places=st.tuples(st.floats(0.0, 100.0), st.floats(0.0, 100.0)),
+    heights=st.tuples(st.floats(0.0, 30.0), st.floats(0.0, 30.0)),
+)
+def test_rapids_over_any_cone_stay_between_the_places_that_are_known(
+    slope: float,
+    turns: tuple[float, float],
+    places: tuple[float, float],
+    heights: tuple[float, float],
+) -> None:
+    cone = Development(frame=WORLD, radius=300.0, height=0.0, slope=slope, middle=0.3)
+    path, ground = on_cone(
+        cone, list(zip(places, turns, heights, strict=True)), (min(places) - 5.0, max(places) + 5.0)
+    )
+    kept = over_ground(path, ground, 40.0)
+    share = np.linspace(0.0, 1.0, 50)[:, None]
+    between = np.concatenate(
+        [a + share * (b - a) for a, b in zip(kept.position[:-1], kept.position[1:], strict=True)]
+    )
+    along, _ = cone.along_and_turn(between)
+    assert along.min() >= ground.known[0] - 0.5 and along.max() <= ground.known[1] + 0.5
+    assert kept.position[-1] == pytest.approx(path.position[-1], abs=1e-9)
+    assert kept.position[0] == pytest.approx(path.position[0], abs=1e-9)
 
 
 def test_what_was_rolled_is_laid_flat_again() -> None:

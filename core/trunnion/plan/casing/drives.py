@@ -113,6 +113,7 @@ def rolling_on(ground: DevelopedGround, chord: float) -> RollingGround:
         high=np.asarray(high),
         profile=ground.profile,
         widths=ground.widths,
+        known=ground.known,
     )
 
 

@@ -127,6 +127,11 @@ class DevelopedGround:
         """Return the plane's area of the ground and of what is looked at around it."""
         return self.band(self.ends[0] - AROUND, self.ends[1] + AROUND, AROUND)
 
+    @property
+    def known(self) -> tuple[float, float]:
+        """The places along the straight lines between which a tool meets nothing that is not known, shank and holder included."""
+        return self.ends[0] - 0.5 * AROUND, self.ends[1] + 0.5 * AROUND
+
     def blank_over(self, z: float) -> Region:
         """Return the plane's area of the ground, once around, that the blank is over a height on."""
         v, high = self.profile.T
@@ -214,12 +219,7 @@ def sector(development: Development, low: float, high: float, half: float) -> Re
         return Region.rectangle(-wide, low, wide, high)
     share = development.half_turn / math.pi
     half = min(half, (math.pi - GAP) / share)
-    corners = np.array([[low, -half], [low, half], [high, half], [high, -half]])
-    on = np.column_stack([np.zeros(4), corners[:, 0], np.zeros(4)])
-    height = development.frame.to_local(development.to_world(on))[:, 2]
-    points = development.from_cylindrical(
-        development.radius_at(corners[:, 0]), corners[:, 1], height
-    )[:, :2]
+    points = development.at(np.array([low, low, high, high]), np.array([-half, half, half, -half]))
     # Circles about the axis are arcs about the cone's tip, which lies beyond the narrow end.
     bulge = math.copysign(math.tan(0.5 * half * share), -development.slope)
     return Region.of(
