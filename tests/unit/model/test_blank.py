@@ -10,8 +10,8 @@ import shapely
 from pytest import approx
 
 from trunnion.geometry.frame import WORLD, Frame
+from trunnion.geometry.kernels.revolved_rays import inside_outline
 from trunnion.geometry.mesh import Mesh, welded
-from trunnion.geometry.revolved import _is_inside
 from trunnion.model.blank import Box, Faceted, Revolved
 from trunnion.model.blank.base import BlankBase
 from trunnion.model.setup import Setup
@@ -270,7 +270,7 @@ def test_a_point_is_inside_a_turned_outline_by_the_lines_beyond_it():
     )
     at = np.random.default_rng(0).uniform([5, -3], [25, 23], (5000, 2))
     expected = shapely.contains_xy(shapely.Polygon(outline), at)
-    assert (_is_inside(outline, at) == expected).all() and expected.any()
+    assert (inside_outline(outline, at) == expected).all() and expected.any()
 
 
 def test_a_smooth_run_of_an_outline_is_one_side_and_its_ends_are_others():
