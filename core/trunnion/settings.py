@@ -141,6 +141,12 @@ def settings(group: str) -> Callable[[type[T]], type[T]]:
 
 def declared(cls: type) -> tuple[Declared, ...]:
     """Return the settings that a group declares, in their order."""
+    group: Any = cls
+    return _declared(group)
+
+
+@cache
+def _declared(cls: Any) -> tuple[Declared, ...]:
     kinds = get_type_hints(cls)
     found = []
     for field in dataclasses.fields(cls):
@@ -148,7 +154,7 @@ def declared(cls: type) -> tuple[Declared, ...]:
         if meta is not None:
             found.append(
                 Declared(
-                    key=f"{cls.GROUP}.{field.name}",  # type: ignore[attr-defined]
+                    key=f"{cls.GROUP}.{field.name}",
                     name=field.name,
                     kind=kinds[field.name],
                     default=field.default,  # type: ignore[arg-type]
@@ -214,19 +220,29 @@ def _is_same(value: Any, default: Any) -> bool:
     return value is default or (default is not None and bool(value == default))
 
 
-def _is_unused(field: Any, thing: Any) -> bool:
-    return _ADDED in field.metadata and _is_same(getattr(thing, field.name), field.default)
+@cache
+def _digested(cls: Any) -> tuple[tuple[str, bool, Any], ...]:
+    """Return the fields of a dataclass that a digest is made of: name, whether older files don't have it, and its default."""
+    # A field that is not given at construction is a cache: it may be there or not yet.
+    return tuple(
+        (f.name, _ADDED in f.metadata, f.default) for f in dataclasses.fields(cls) if f.init
+    )
+
+
+_PLAIN = frozenset({str, int, float, bool, type(None)})
 
 
 def _plain(thing: Any) -> Any:
-    if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
-        # A field that is not given at construction is a cache: it may be there or not yet.
-        own = {
-            f.name: _plain(getattr(thing, f.name))
-            for f in dataclasses.fields(thing)
-            if f.init and not _is_unused(f, thing)
-        }
-        return {"": type(thing).__qualname__, **own}
+    kind = type(thing)
+    if kind in _PLAIN:
+        return thing
+    if dataclasses.is_dataclass(kind):
+        own: dict[str, Any] = {"": kind.__qualname__}
+        for name, is_added, default in _digested(kind):
+            value = getattr(thing, name)
+            if not (is_added and _is_same(value, default)):
+                own[name] = _plain(value)
+        return own
     if isinstance(thing, Mapping):
         return {str(k): _plain(v) for k, v in thing.items()}
     if isinstance(thing, (list, tuple, set, frozenset)):
@@ -234,9 +250,9 @@ def _plain(thing: Any) -> Any:
         return sorted(parts, key=repr) if isinstance(thing, (set, frozenset)) else parts
     if hasattr(thing, "tobytes"):
         return hashlib.sha256(thing.tobytes()).hexdigest()
-    if thing is None or isinstance(thing, (str, int, float, bool)):
+    if isinstance(thing, (str, int, float)):
         return thing
-    raise TypeError(f"no digest of a {type(thing).__name__}")
+    raise TypeError(f"no digest of a {kind.__name__}")
 
 
 def _read(kind: type, text: Value) -> Value:

@@ -7,11 +7,10 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels.distance import nearest_segment, winding_numbers
-from trunnion.geometry.kernels.revolved_rays import revolved_rays_loop, slabs
 from trunnion.geometry.rays import Intervals
 
-ROOM = 4
-"""Intervals that each ray has room for at first: twice through a thin wall is the usual."""
+CAPACITY = 4
+"""Intervals that each ray can hold at first: twice through a thin wall is the usual."""
 
 
 def revolved_volume(outline: Floats) -> float:
@@ -65,20 +64,23 @@ def run_distances(outline: Floats, points: Floats) -> Floats:
 
 def revolved_intervals(outline: Floats, start: Floats, direction: Floats) -> Intervals:
     """Return where rays from `start` (n, 3) along a unit `direction` (3,) are in the solid."""
+    # Loaded where it is first needed: a window that only shows a part starts sooner without compiled loops.
+    from trunnion.geometry.kernels.revolved_rays import revolved_rays_loop, slabs
+
     scale = tolerance.PARAMETRIC * float(np.abs(outline).max())
     start = np.ascontiguousarray(start, dtype=np.float64)
     direction = np.ascontiguousarray(direction, dtype=np.float64)
-    room = ROOM
+    capacity = CAPACITY
     while True:
         count = np.zeros(len(start), np.int64)
-        low, high = np.zeros((len(start), room)), np.zeros((len(start), room))
+        low, high = np.zeros((len(start), capacity)), np.zeros((len(start), capacity))
         most = max(
             1,
             revolved_rays_loop(outline, *slabs(outline), start, direction, scale, count, low, high),
         )
-        if most <= room:
+        if most <= capacity:
             return Intervals(count, low[:, :most].copy(), high[:, :most].copy())
-        room = most
+        capacity = most
 
 
 def _lines(outline: Floats, rows: Ints | None = None) -> tuple[Floats, ...]:

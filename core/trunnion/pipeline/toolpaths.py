@@ -29,7 +29,7 @@ from trunnion.plan.turning.drive import RevolvedDrive
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
-from trunnion.toolpath.motion.ground_rapids import over_ground
+from trunnion.toolpath.motion.ground_links import over_ground
 from trunnion.toolpath.motion.load import LoadStock, PathLoad
 from trunnion.toolpath.motion.reorient import clearance_sphere, led_away, moved_over
 from trunnion.toolpath.motion.rolled import laid_flat, rolled

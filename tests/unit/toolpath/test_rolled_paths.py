@@ -16,7 +16,7 @@ from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Revolved
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.plan.contract import RollingGround
-from trunnion.toolpath.motion.ground_rapids import over_ground
+from trunnion.toolpath.motion.ground_links import over_ground
 from trunnion.toolpath.motion.rolled import laid_flat, rolled
 from trunnion.toolpath.stock.views import StockViews
 

@@ -160,9 +160,9 @@ def _holds(level, first, slope, rho, z):  # type: ignore[no-untyped-def]  # prag
 
 @njit(cache=True, nogil=True)
 def revolved_rays_loop(outline, level, first, slope, start, direction, flat, count, low, high):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
-    """The same as `revolved_rays`, of an outline and its slabs: fills count (n,), low and high (n, m) as far as there is room; return the
+    """The same as `revolved_rays`, of an outline and its slabs: fills count (n,), low and high (n, m) as far as they go; return the
     most intervals that a ray has. `flat` mm: how far the ends of a line that makes a plane are apart along z at most."""
-    lines, room, most = len(outline), low.shape[1], 0
+    lines, capacity, most = len(outline), low.shape[1], 0
     found = np.empty(2 * lines)
     dx, dy, dz = direction[0], direction[1], direction[2]
     for k in range(len(start)):
@@ -182,10 +182,10 @@ def revolved_rays_loop(outline, level, first, slope, start, direction, flat, cou
                 inside = _holds(
                     level, first, slope, math.hypot(sx + t * dx, sy + t * dy), sz + t * dz
                 )
-            if inside and not is_open and made < room:
+            if inside and not is_open and made < capacity:
                 low[k, made] = found[i]
             if is_open and not inside:
-                if made < room:
+                if made < capacity:
                     high[k, made] = found[i]
                 made += 1
             is_open = inside

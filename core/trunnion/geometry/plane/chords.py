@@ -17,9 +17,6 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.plane.curve import FULL, Segments, chord_counts
 from trunnion.geometry.plane.intersections import CLOSE, crossings, overlapping_boxes
 
-GRIDS = np.array([(0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5)])
-"""How far four grids are shifted, in cells: two points nearer than half a cell share a cell of at least one of them."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chords:
@@ -74,32 +71,11 @@ def chorded(
 
 def pulled_together(points: Floats) -> Floats:
     """Return points (n, 2) in which those that are one point within the coincidence tolerance have the coordinates of the first."""
-    _, first, back = np.unique(
-        points[:, 0] + 1j * points[:, 1], return_index=True, return_inverse=True
-    )
-    apart = points[first]
-    free = _dense(apart)
-    free = free[np.argsort(first[free])]
-    owner = np.arange(len(apart))
-    while len(free) > 1:
-        near = np.abs(apart[free] - apart[free[0]]).max(axis=1) <= CLOSE
-        owner[free[near]] = free[0]
-        free = free[~near]
-    return apart[owner[back]]
+    # Loaded where it is first needed: a window that only shows a part starts sooner without compiled loops.
+    from trunnion.geometry.kernels.point_groups import first_of_group_loop
 
-
-def _dense(points: Floats) -> Ints:
-    """Return the rows of points that may have another one within the coincidence tolerance: they share a cell of one of four grids."""
-    cell = (points - points.min(axis=0)) / (4.0 * CLOSE)
-    x, y = np.floor(cell + GRIDS[:, None]).astype(np.int64).transpose(2, 0, 1)
-    # Two cells may share a number; that only costs a look.
-    number = x * 1000003 + y
-    order = np.argsort(number, axis=1)
-    number = np.take_along_axis(number, order, axis=1)
-    grid, same = np.nonzero(number[:, 1:] == number[:, :-1])
-    dense = np.zeros(len(points), dtype=bool)
-    dense[order[grid, same]] = dense[order[grid, same + 1]] = True
-    return np.flatnonzero(dense)
+    order = np.argsort(points[:, 0], kind="stable")
+    return points[first_of_group_loop(points, order, CLOSE)]
 
 
 def _shared_carriers(

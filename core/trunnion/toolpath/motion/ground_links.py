@@ -36,7 +36,7 @@ def over_ground(path: Toolpath, ground: RollingGround, clearance: float) -> Tool
     if not leaves.any():
         return path
     pieces = [
-        _way_round(start[row], path.position[row], ground.development, clearance)
+        _around(start[row], path.position[row], ground.development, clearance)
         if leaves[row]
         else path.position[row : row + 1]
         for row in range(len(path))
@@ -52,16 +52,16 @@ def over_ground(path: Toolpath, ground: RollingGround, clearance: float) -> Tool
     )
 
 
-def _way_round(start: Floats, end: Floats, development: Development, clearance: float) -> Floats:
+def _around(start: Floats, end: Floats, development: Development, clearance: float) -> Floats:
     """Return the positions (k, 3) of a way from one (3,) to another: up, round with place and angle changing evenly, down."""
     along, turns = development.along_and_turn(np.stack([start, end]))
     count = max(1, math.ceil(abs(turns[1] - turns[0]) / MOST_TURN))
     share = np.arange(count + 1) / count
-    round_ = development.at(
+    around = development.at(
         along[0] + share * (along[1] - along[0]), turns[0] + share * (turns[1] - turns[0])
     )
-    round_[[0, -1]] = start[:2], end[:2]
+    around[[0, -1]] = start[:2], end[:2]
     height = max(clearance, float(start[2]), float(end[2]))
-    raised = np.column_stack([round_, np.full(len(round_), height)])
+    raised = np.column_stack([around, np.full(len(around), height)])
     first = 0 if height - start[2] > SHORT_MOVE else 1
     return np.vstack([raised[first:], *([end[None]] if height - end[2] > SHORT_MOVE else [])])
