@@ -195,10 +195,11 @@ def _met_over(
 
 def overhanging(skin: Skin) -> DropSurface | None:
     """Return what of a skin faces downwards above its lowest height, ready for dropping cutters on it; None where nothing does."""
-    corners = skin.points[skin.triangles]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    # The face's own normals: a sliver between points of its border may be turned over, and level ground would hang over all along it.
+    normal = skin.normals[skin.triangles].mean(axis=1)
     hangs = normal[:, 2] < -math.sin(tolerance.ANGLE) * np.linalg.norm(normal, axis=1)
-    hangs &= corners[:, :, 2].max(axis=1) > float(skin.points[:, 2].min()) + tolerance.SEW
+    top = skin.points[skin.triangles][:, :, 2].max(axis=1)
+    hangs &= top > float(skin.points[:, 2].min()) + tolerance.SEW
     return DropSurface.of(skin.points, skin.triangles[hangs]) if hangs.any() else None
 
 
