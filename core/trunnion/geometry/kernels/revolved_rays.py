@@ -112,37 +112,35 @@ def _cone(r: float, z: float, slope: float, start: Floats, direction: Floats) ->
 
 
 @njit(cache=True, nogil=True)
-def _cross(r, z, r1, z1, sx, sy, sz, dx, dy, dz, flat, found, n):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
-    """Add where a ray crosses what a line of the outline makes to those found so far (n), in order; return how many they are then."""
-    first, second = math.inf, math.inf
-    if abs(z1 - z) <= flat:
-        if dz != 0.0:
-            first = (z - sz) / dz
-    else:
-        slope = (r1 - r) / (z1 - z)
-        wide, grow = r + slope * (sz - z), slope * dz
-        a = dx * dx + dy * dy - grow * grow
-        b = sx * dx + sy * dy - wide * grow
-        c = sx * sx + sy * sy - wide * wide
-        if abs(a) <= tolerance.PARAMETRIC:
-            if b != 0.0:
-                first = -0.5 * c / b
-        else:
-            square = b * b - a * c
-            if square > 0.0:
-                root = math.sqrt(square)
-                first, second = (-b - root) / a, (-b + root) / a
-    low, high = min(z, z1) - tolerance.COINCIDENT, max(z, z1) + tolerance.COINCIDENT
-    for t in (first, second):
-        if not math.isinf(t) and low <= sz + t * dz <= high:
-            # Sorted by insertion: a ray crosses few lines.
-            k = n
-            while k > 0 and found[k - 1] > t:
-                found[k] = found[k - 1]
-                k -= 1
-            found[k] = t
-            n += 1
-    return n
+def _lines(outline, direction, flat):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
+    """Return what all rays share of the lines of an outline (k, 7): radius and height of a point, change of the radius over the height (not
+    a number for a plane), that along the rays, the square's coefficient, and the heights between which the line is."""
+    lines, n = np.empty((len(outline), 7)), len(outline)
+    across = direction[0] * direction[0] + direction[1] * direction[1]
+    for i in range(n):
+        r, z, r1, z1 = (
+            outline[i, 0],
+            outline[i, 1],
+            outline[(i + 1) % n, 0],
+            outline[(i + 1) % n, 1],
+        )
+        slope = math.nan if abs(z1 - z) <= flat else (r1 - r) / (z1 - z)
+        grow = slope * direction[2]
+        lines[i, 0], lines[i, 1], lines[i, 2], lines[i, 3] = r, z, slope, grow
+        lines[i, 4] = across - grow * grow
+        lines[i, 5] = min(z, z1) - tolerance.COINCIDENT
+        lines[i, 6] = max(z, z1) + tolerance.COINCIDENT
+    return lines
+
+
+@njit(cache=True, nogil=True)
+def _insert(found, n, t):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
+    """Put a crossing among those found so far (n), in their order: a ray crosses few lines."""
+    k = n
+    while k > 0 and found[k - 1] > t:
+        found[k] = found[k - 1]
+        k -= 1
+    found[k] = t
 
 
 @njit(cache=True, nogil=True)
@@ -162,18 +160,38 @@ def _holds(level, first, slope, rho, z):  # type: ignore[no-untyped-def]  # prag
 def revolved_rays_loop(outline, level, first, slope, start, direction, flat, count, low, high):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
     """The same as `revolved_rays`, of an outline and its slabs: fills count (n,), low and high (n, m) as far as they go; return the
     most intervals that a ray has. `flat` mm: how far the ends of a line that makes a plane are apart along z at most."""
-    lines, capacity, most = len(outline), low.shape[1], 0
-    found = np.empty(2 * lines)
+    capacity, most = low.shape[1], 0
+    lines, found = _lines(outline, direction, flat), np.empty(2 * len(outline))
     dx, dy, dz = direction[0], direction[1], direction[2]
     for k in range(len(start)):
         sx, sy, sz = start[k, 0], start[k, 1], start[k, 2]
+        along, square_away = sx * dx + sy * dy, sx * sx + sy * sy
         n = 0
-        for i in range(lines):
-            j = (i + 1) % lines
-            n = _cross(
-                outline[i, 0], outline[i, 1], outline[j, 0], outline[j, 1],
-                sx, sy, sz, dx, dy, dz, flat, found, n,
-            )  # fmt: skip
+        for i in range(len(lines)):
+            grows = lines[i, 2]
+            if math.isnan(grows):
+                if dz != 0.0:
+                    t = (lines[i, 1] - sz) / dz
+                    if lines[i, 5] <= sz + t * dz <= lines[i, 6]:
+                        _insert(found, n, t)
+                        n += 1
+                continue
+            wide, a = lines[i, 0] + grows * (sz - lines[i, 1]), lines[i, 4]
+            b, c = along - wide * lines[i, 3], square_away - wide * wide
+            if abs(a) <= tolerance.PARAMETRIC:
+                if b != 0.0:
+                    t = -0.5 * c / b
+                    if lines[i, 5] <= sz + t * dz <= lines[i, 6]:
+                        _insert(found, n, t)
+                        n += 1
+                continue
+            square = b * b - a * c
+            if square > 0.0:
+                root = math.sqrt(square)
+                for t in ((-b - root) / a, (-b + root) / a):
+                    if lines[i, 5] <= sz + t * dz <= lines[i, 6]:
+                        _insert(found, n, t)
+                        n += 1
         made, is_open = 0, False
         for i in range(n):
             inside = False
