@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion import tolerance
-from trunnion.geometry.kernels.point_groups import first_of_group, first_of_group_loop
+from trunnion.geometry.kernels.point_groups import first_of_group
+from trunnion.geometry.kernels.point_groups_compiled import first_of_group_loop
 from trunnion.geometry.plane.chords import pulled_together
 
 CLOSE = tolerance.COINCIDENT

@@ -14,8 +14,12 @@ import shapely
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.plane.curve import FULL, Segments, chord_counts
+from trunnion.geometry.kernels.point_groups import first_of_group
+from trunnion.geometry.plane.curve import FULL, Segments, chord_counts, compiled_pays
 from trunnion.geometry.plane.intersections import CLOSE, crossings, overlapping_boxes
+
+GROUPED = 1 << 6
+"""What one point costs the plain loop, in the measure of `compiled_pays`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,8 +75,9 @@ def chorded(
 
 def pulled_together(points: Floats) -> Floats:
     """Return points (n, 2) in which those that are one point within the coincidence tolerance have the coordinates of the first."""
-    # Loaded where it is first needed: a window that only shows a part starts sooner without compiled loops.
-    from trunnion.geometry.kernels.point_groups import first_of_group_loop
+    if not compiled_pays(GROUPED * len(points)):
+        return points[first_of_group(points, CLOSE)]
+    from trunnion.geometry.kernels.point_groups_compiled import first_of_group_loop
 
     order = np.argsort(points[:, 0], kind="stable")
     return points[first_of_group_loop(points, order, CLOSE)]

@@ -395,12 +395,18 @@ def signed_distance(segments: Segments, points: Floats) -> Floats:
 _work = 0
 
 
-def _loops(segments: Segments, points: Floats) -> ModuleType:
-    """Return the plain loops until loading the compiled ones pays, then those; both give the very same numbers."""
+def compiled_pays(work: int) -> bool:
+    """Return whether plain loops have done so much, with some work more, that loading the compiled ones pays: both give the very same
+    numbers."""
     global _work
     if _work < COMPILED_FROM:
-        _work += QUESTION + len(segments) * len(points)
-    if _work < COMPILED_FROM:
+        _work += QUESTION + work
+    return _work >= COMPILED_FROM
+
+
+def _loops(segments: Segments, points: Floats) -> ModuleType:
+    """Return the plain loops until loading the compiled ones pays, then those."""
+    if not compiled_pays(len(segments) * len(points)):
         return distance_kernels
     from trunnion.geometry.kernels import distance_compiled
 
