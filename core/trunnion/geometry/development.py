@@ -99,19 +99,29 @@ class Development:
 
     def to_world(self, flat: Floats) -> Floats:
         """Return points (..., 3) in the part's coordinates of u, v, h."""
-        across, along = self._along
         y, turn = self.along_and_turn(flat)
-        radius = self.radius + y * across + flat[..., 2] * along
-        height = self.height + y * along - flat[..., 2] * across
-        turn = turn + self.middle
+        return self.round_world(y, turn, flat[..., 2])
+
+    def round_world(self, along: Floats, turns: Floats, heights: Floats) -> Floats:
+        """Return points (..., 3) in the part's coordinates at places along the straight lines, angles (rad) about the axis from the plane's
+        middle, which may pass half a turn, and heights (mm) over the surface."""
+        across, up = self._along
+        radius = self.radius + along * across + heights * up
+        height = self.height + along * up - heights * across
+        turn = turns + self.middle
         return self.frame.to_world(
             np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
         )
 
     def normals(self, flat: Floats) -> Floats:
         """Return the unit normals (..., 3) out of the surface, in the part's coordinates, over u, v, h."""
+        return self.round_normals(self.along_and_turn(flat)[1])
+
+    def round_normals(self, turns: Floats) -> Floats:
+        """Return the unit normals (..., 3) out of the surface, in the part's coordinates, at angles (rad) about the axis from the plane's
+        middle."""
         across, along = self._along
-        turn = self.along_and_turn(flat)[1] + self.middle
+        turn = turns + self.middle
         level = np.full(turn.shape, -across)
         return self.frame.world_direction(
             np.stack([along * np.cos(turn), along * np.sin(turn), level], axis=-1)

@@ -26,6 +26,8 @@ class CuttingData:
     the spindle allows less (0: the same); `entry_angle` degrees: the slope that the material bears helices and ramps at (0: nothing is
     known of it). Where spindle speed and feed were chosen by the optimiser: `handbook_spindle` 1/min and
     `handbook_feed` mm/min of the material's tables (0 elsewhere), and `bound_by`, what stops a quicker choice, in words.
+    Of a tool in a locked spindle `spindle` is the table's speed, `feed` the ground's under it and `feed_per_tooth` the feed in mm a turn of
+    the table.
     `spindle_mode` and `feed_mode` say what a program gives of them: at a constant surface speed `spindle` is that of a rotating tool's own
     diameter, and `highest_spindle` 1/min is never passed.
     """
@@ -152,8 +154,10 @@ class Operation:
 
     @property
     def spindle(self) -> float:
-        """The spindle speed in 1/min; where turning work keeps its surface speed, the highest."""
+        """The spindle speed in 1/min; where turning work keeps its surface speed, the highest; 0 of a spindle that is locked."""
         data = self.data
+        if self.tool.locked:
+            return 0.0
         if self.tool.rotates:
             return data.spindle_at(self.cutter.diameter)
         return data.highest_spindle if self.surface_speed > 0.0 else data.spindle

@@ -76,8 +76,10 @@ def with_change(
         )
     checked(change)
     before = process.operation(id)
-    if not before.tool.rotates:
-        raise BadInput(f"{id}: only operations of rotating tools can be changed by hand")
+    if not before.tool.rotates or before.tool.locked:
+        raise BadInput(
+            f"{id}: only operations of tools that turn in the spindle can be changed by hand"
+        )
     material = shop.material(process.material)
     if change.tool and change.tool != before.tool.name:
         tool = _tool_named(change.tool, before, material, shop)

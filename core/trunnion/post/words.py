@@ -109,7 +109,11 @@ def refuse_unwritable(section: ProgramSection, title: str, coolant: Container[st
         )
     if section.coolant not in coolant:
         raise Refused(f"operation {id}: {title} has no coolant {section.coolant}")
-    if section.spindle_stopped:
+    if section.spindle_stopped != section.tool.locked:
+        if section.tool.locked:
+            raise Refused(
+                f"operation {id}: {section.tool.name} is a turning insert in a locked spindle: that turns at {section.spindle:g} 1/min"
+            )
         raise Refused(f"operation {id}: a spindle speed of {section.spindle:g} turns nothing")
     if not len(section.path):
         raise Refused(f"operation {id} has no motion: nothing to write")

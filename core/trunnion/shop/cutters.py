@@ -8,15 +8,31 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from trunnion.model.tool import Holder, Tool
+from trunnion.model.tool import BUTTON, Holder, Tool
 from trunnion.shop.reading import CatalogueEntry, by_name, entries
 from trunnion.units import trimmed
 
-USES = ("face", "rough", "finish", "surface", "undercut", "drill", "spot", "countersink")
+USES = (
+    "face",
+    "rough",
+    "finish",
+    "surface",
+    "undercut",
+    "drill",
+    "spot",
+    "countersink",
+    "interrupted",
+)
 END_MILL = "end mill"
 """A form that the corner radius decides: flat, bull or ball."""
-KINDS = (END_MILL, "taper", "barrel", "t-slot", "drill", "form")
-_USE = {"taper": ("surface",), "barrel": ("surface",), "t-slot": ("undercut",), "drill": ("drill",)}
+KINDS = (END_MILL, "taper", "barrel", "t-slot", "drill", BUTTON, "form")
+_USE = {
+    "taper": ("surface",),
+    "barrel": ("surface",),
+    "t-slot": ("undercut",),
+    "drill": ("drill",),
+    BUTTON: ("interrupted",),
+}
 """What a form is for unless its entry says so."""
 ISO_GROUPS = ("P", "M", "K", "N", "S", "H")
 _LARGEST = 1000.0
@@ -30,7 +46,8 @@ _HALF_TURN, _QUARTER_TURN = 180.0, 90.0
 class Cutter:
     """A catalogue cutter with what it is made for: ISO 513 groups and uses.
 
-    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot` and `countersink`.
+    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot`, `countersink` and
+    `interrupted` (turning in the gaps between bosses).
     """
 
     tool: Tool

@@ -223,7 +223,7 @@ def _offered(setting: Declared) -> Declared:
 
     shop = load_shop()
     known = (
-        [tool.name for tool in shop.tools]
+        [tool.name for tool in shop.tools if not tool.locked]
         if setting.catalogue == "tools"
         else sorted(getattr(shop, setting.catalogue))
     )

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trunnion.plan.casing.bands import BossBox, bands_of, free_gaps, widened
-from trunnion.plan.casing.gaps import busy_time, shortest_gap, speed_for, travel_time
+from trunnion.plan.casing.gaps import busy_time, shortest_gap, speed_for
 from trunnion.plan.casing.regions import (
     around_bosses,
     merged,
@@ -20,6 +20,7 @@ from trunnion.plan.casing.regions import (
     without_slivers,
 )
 from trunnion.plan.casing.settings import RegionSettings
+from trunnion.plan.turning.retract import travel_time
 from trunnion.recognize.casing.meridian import Meridian
 from trunnion.settings import choose
 from trunnion.units import radians

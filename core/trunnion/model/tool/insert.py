@@ -157,6 +157,11 @@ class TurningTool:
         return False
 
     @property
+    def locked(self) -> bool:
+        """Whether a milling spindle holds it that stands still: a lathe's turret or ram does."""
+        return False
+
+    @property
     def form(self) -> str:
         """The form that tool lists call it."""
         return "turning"

@@ -22,6 +22,12 @@ def _end(tool: Tool) -> str:
     return ""
 
 
+def _button(tool: Tool) -> str:
+    if 2.0 * tool.corner_radius != tool.diameter:
+        return "a button is round: its corner radius is half its diameter"
+    return "a button is one insert: it has one tooth" if tool.teeth != 1 else _end(tool)
+
+
 def _taper(tool: Tool) -> str:
     if not 0.0 < tool.taper_angle < 90.0:
         return "a taper needs a taper angle between 0 and 90 degrees"
@@ -67,9 +73,10 @@ MILLS: Mapping[str, Callable[[Tool], str]] = {
     "flat": _end,
     "bull": _end,
     "ball": _end,
+    "button": _button,
     "taper": _taper,
     "barrel": _barrel,
     "t-slot": _t_slot,
     "form": _form,
 }
-"""What the numbers of each form of milling cutter lack, in words, or nothing."""
+"""What the numbers of each form of milling cutter lack, in words, or nothing; a button, which turns, has the end of a ball."""

@@ -15,7 +15,9 @@ from trunnion.model.tool.mill import MILLS
 CHECKS: Mapping[str, Callable[[Tool], str]] = {**MILLS, "drill": wrong_drill}
 """What the numbers of each form lack, in words, or nothing."""
 FORMS = tuple(CHECKS)
-PLAIN_FORMS = ("flat", "bull", "ball")
+BUTTON = "button"
+"""The form of a round turning insert in a neutral holder."""
+PLAIN_FORMS = ("flat", "bull", "ball", BUTTON)
 """Forms that are an end of a radius and a corner radius, and nothing else."""
 
 
@@ -33,6 +35,8 @@ class Tool:
     - barrel: a round tip of `corner_radius`, tangent to a flank of `barrel_radius` whose widest circle is `diameter`.
     - t-slot: a disc of `diameter`, as thick as the flutes are long, rounded below and above by `corner_radius`; it cuts upwards too.
     - drill: a cone of `point_angle` (degrees, over both sides) and a cylinder of `diameter`.
+    - button: a round turning insert of `diameter` in a neutral holder, which the locked spindle holds while the table brings the work past:
+      what is kept clear of it, and what it is taken to cut, is a ball end of `diameter`.
     - form: `outline`, points (r, z, bulge) from the tip to the top of the flutes; the bulge (tan of a quarter of the arc's angle, positive
       where the cutter is rounded outwards) belongs to the way to the next point.
     """
@@ -80,8 +84,13 @@ class Tool:
 
     @property
     def rotates(self) -> bool:
-        """Whether it turns in the spindle, and the work stands still."""
+        """Whether it is moved as milling tools are, the work held by the machine's axes, and not as a lathe's tool is."""
         return True
+
+    @property
+    def locked(self) -> bool:
+        """Whether the spindle that holds it stands still."""
+        return self.form == BUTTON
 
     @property
     def point_length(self) -> float:

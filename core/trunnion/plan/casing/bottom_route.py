@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from trunnion.findings import Finding, Refused, error, face_tags, warning
-from trunnion.geometry.plane.region import Region
+from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
 from trunnion.plan.casing.grounds import bottom_of, ground_under
@@ -102,7 +102,7 @@ def plan_layers(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
 def plan_floor(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
     """Add the finishing of a bottom, or of what its cutter leaves at feet."""
     ground = state.grounds[pocket.id]
-    ring = ring_of(ground).minus(ground.over(LEAST))
+    ring = ring_of(ground).minus(ground.over(LEAST)).minus(state.gaps.get(pocket.id, EMPTY_REGION))
     before = [
         GroundCutter.of(o) for o in state.operations if o.feature == pocket.id and o.kind == FLOOR
     ]
@@ -132,7 +132,7 @@ def plan_floor(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
         faces=pocket.with_role(BOTTOM),
         choices={
             STOCK: stock,
-            AROUND_TOOL: _around(state, ground, tool, pocket, 0.0),
+            AROUND_TOOL: cutter_clearance(state, ground, tool, pocket, 0.0),
             ABOVE_TOOL: state.route.reach_clearance,
             "plane.floor.wall_distance": 0.0,
         },
@@ -154,7 +154,7 @@ def _add_layers(
     choices: dict[str, Value] = {
         WALL_ALLOWANCE: wall,
         FLOOR_ALLOWANCE: floor,
-        AROUND_TOOL: _around(state, ground, tool, pocket, wall),
+        AROUND_TOOL: cutter_clearance(state, ground, tool, pocket, wall),
         ABOVE_TOOL: state.route.reach_clearance,
     }
     state.add(
@@ -207,13 +207,13 @@ def _roughed(
 ) -> Region:
     """Return what of a ring a roughing cutter clears."""
     wall = state.route.wall_allowance
-    around = _around(state, ground, tool, pocket, wall)
+    around = cutter_clearance(state, ground, tool, pocket, wall)
     free = ground.free(state.route.floor_allowance, tool, around, state.route.reach_clearance)
     axis_region = free.offset(-tool.radius - wall)
     return axis_region.offset(tool.radius + wall).intersect(ring) if axis_region else axis_region
 
 
-def _around(
+def cutter_clearance(
     state: CasingPlanState, ground: DevelopedGround, tool: Tool, pocket: Feature, own: float
 ) -> float:
     """Return what (mm) shank and holder of a cutter with an allowance of its `own` keep from the part."""
@@ -232,7 +232,7 @@ def _finisher(
     ]
     tools = _one_a_size(sorted(fits, key=lambda t: (-t.diameter, depth_reached(t), t.name)))
     for tool in tools:
-        around = _around(state, ground, tool, pocket, 0.0)
+        around = cutter_clearance(state, ground, tool, pocket, 0.0)
         free = ground.free(0.0, tool, around, state.route.reach_clearance)
         axis_region = free.offset(-tool.radius)
         if axis_region:

@@ -7,11 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.geometry.plane.region import union_all
 from trunnion.model.blank import Blank
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
 from trunnion.plan.casing.grounds import bottom_of, fine_mesh, ground_under
+from trunnion.plan.casing.interrupted_route import gap_drive, turned_of
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RollingGround, Scene
+from trunnion.plan.cutting.interrupted import INTERRUPTED
 from trunnion.plan.development.drives import (
     FLOOR,
     ROUGH,
@@ -64,7 +67,9 @@ def plane_driven(
     if operation.kind == ROUGH:
         drive = layers_over(operation, ground, boss_tops(ground), before)
     else:
-        drive = floor_over(operation, ground, before, number(operation, STOCK))
+        turned = [o for o in earlier(operation, scene) if o.kind == INTERRUPTED]
+        areas = [turned_of(o, ground, roughed_before(o, scene)) for o in turned]
+        drive = floor_over(operation, ground, before, number(operation, STOCK), union_all(areas))
     rolling = rolling_on(ground, _chord(operation))
     setup = flat_setup(scene.setup, ground)
     return OperationDrive(
@@ -80,13 +85,35 @@ def _chord(operation: Operation) -> float:
     return min(max(CHORD_SHARE * least, FINISH_CHORD), ROUGH_CHORD)
 
 
+def gaps_driven(
+    operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
+) -> OperationDrive:
+    """Return the passes of interrupted turning over a bottom."""
+    ground = ground_in(scene, operation.feature, progress)
+    clearance = flat_setup(scene.setup, ground).clearance
+    drive = gap_drive(operation, ground, roughed_before(operation, scene), clearance)
+    return OperationDrive(
+        setup=scene.setup, drive=drive, identity=drive, cell=stock_cell(scene.blank)
+    )
+
+
 def earlier_over(operation: Operation, scene: Scene) -> list[Operation]:
     """Return the operations of an operation's kind that went over the same bottom before."""
+    return [o for o in earlier(operation, scene) if o.kind == operation.kind]
+
+
+def roughed_before(operation: Operation, scene: Scene) -> list[Operation]:
+    """Return the operations that roughed an operation's bottom before."""
+    return [o for o in earlier(operation, scene) if o.kind == ROUGH]
+
+
+def earlier(operation: Operation, scene: Scene) -> list[Operation]:
+    """Return the operations on the same bottom before an operation."""
     found = []
     for o in scene.process.of_setup(operation.setup):
         if o.id == operation.id:
             break
-        if o.kind == operation.kind and o.feature == operation.feature and not o.suppressed:
+        if o.feature == operation.feature and not o.suppressed:
             found.append(o)
     return found
 

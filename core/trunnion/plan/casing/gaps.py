@@ -12,21 +12,11 @@ from __future__ import annotations
 import math
 
 from trunnion.plan.casing.settings import RegionSettings
+from trunnion.plan.turning.retract import travel_time
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, radians
 
 PER_MINUTE = MM_PER_METRE / SECONDS_PER_MINUTE
 """mm/s in a m/min."""
-
-
-def travel_time(length: float, speed: float, acceleration: float) -> float:
-    """Return the time in s for a length (mm) from rest to rest, with a highest speed (mm/s) and an acceleration (mm/s2).
-
-    >>> travel_time(10.0, 100.0, 1000.0), travel_time(4.0, 1000.0, 100.0)
-    (0.2, 0.4)
-    """
-    if length >= speed**2 / acceleration:
-        return length / speed + speed / acceleration
-    return 2.0 * math.sqrt(length / acceleration)
 
 
 def busy_time(height: float, settings: RegionSettings) -> float:

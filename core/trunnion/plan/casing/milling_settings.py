@@ -45,6 +45,11 @@ class CasingRouteSettings:
         label="Reach",
         help="Share of a bottom that its cutter must reach; the largest that does is taken, smaller ones cut the rest.",
     )
+    interrupted: bool = setting(
+        True,
+        label="Interrupted turning",
+        help="Gaps between bosses that are long enough are turned on a machine that turns and mills; else bottoms are milled throughout.",
+    )
     lathe: str = setting(
         "",
         label="Turning machine",

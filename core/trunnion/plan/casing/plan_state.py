@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from trunnion.findings import Finding
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.mesh import Mesh
+from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.material import Machine, Material
@@ -15,6 +16,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.part import Part
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
+from trunnion.plan.casing.settings import RegionSettings
 from trunnion.plan.casing.turning_route import TurnedRoute
 from trunnion.plan.contract import PartContext
 from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
@@ -28,7 +30,8 @@ from trunnion.shop import Shop, Stage
 
 @dataclass(slots=True, kw_only=True)
 class CasingPlanState:
-    """What is known while a casing is planned in a setup; `grounds` are the bottoms laid flat, by their pockets. `next` is the setup of the
+    """What is known while a casing is planned in a setup; `grounds` are the bottoms laid flat, by their pockets, `gaps` what of them
+    is turned with interruptions. `next` is the setup of the
     part turned over, where the machine takes it so: for what the first one does not reach. `turned` is the turning before them, where the
     blank did not come turned."""
 
@@ -44,10 +47,12 @@ class CasingPlanState:
     route: RouteSettings
     settings: CasingRouteSettings
     cutting: CuttingSettings
+    regions: RegionSettings
     progress: Progress
     next: Setup | None = None
     turned: TurnedRoute | None = None
     grounds: dict[str, DevelopedGround] = field(default_factory=dict)
+    gaps: dict[str, Region] = field(default_factory=dict)
     operations: list[Operation] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 

@@ -12,11 +12,12 @@ from trunnion.findings import Finding, Severity
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
-from trunnion.plan.casing.drives import holes_driven, plane_driven, sides_driven
+from trunnion.plan.casing.drives import gaps_driven, holes_driven, plane_driven, sides_driven
 from trunnion.plan.casing.grounds import fine_mesh
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.casing.route import CUTTER_RULES, make_casing_route
+from trunnion.plan.casing.settings import RegionSettings
 from trunnion.plan.casing.turning_route import after_turning, plan_turned, revolved_driven
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.cutting.milling import CuttingSettings
@@ -29,6 +30,7 @@ from trunnion.plan.settings import RouteSettings
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import PART
 from trunnion.plan.turning.drive import RevolvedDrive
+from trunnion.plan.turning.gap_drive import GapDrive
 from trunnion.plan.turning.settings import TurningSettings
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
@@ -50,7 +52,12 @@ class CasingPlanner:
     """Plans the milled side of a casing: bottoms laid flat, bosses along their normals, holes along their axes."""
 
     name, noun = "casing", "casings"
-    settings: tuple[type, ...] = (RouteSettings, CasingRouteSettings, TurningSettings)
+    settings: tuple[type, ...] = (
+        RouteSettings,
+        CasingRouteSettings,
+        TurningSettings,
+        RegionSettings,
+    )
     cutter_rules: tuple[str, ...] = CUTTER_RULES
     skins: tuple[float, ...] = (tolerance.CHORD, tolerance.SKIN_CHORD)
     lean = math.radians(LEAN)
@@ -112,6 +119,7 @@ class CasingPlanner:
             route=route,
             settings=job.settings_of(CasingRouteSettings),
             cutting=job.settings_of(CuttingSettings),
+            regions=job.settings_of(RegionSettings),
             progress=job.progress.part(0.2, 1.0),
             turned=turned,
             next=others[0] if others else None,
@@ -128,6 +136,7 @@ class CasingPlanner:
                 SurfaceDrive: sides_driven,
                 HoleDrive: holes_driven,
                 RevolvedDrive: revolved_driven,
+                GapDrive: gaps_driven,
             },
             self,
             operation,

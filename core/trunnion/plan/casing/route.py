@@ -22,6 +22,7 @@ from trunnion.plan.casing.bottom_route import (
     plan_layers,
 )
 from trunnion.plan.casing.hole_route import RULES, casing_holes, plan_holes
+from trunnion.plan.casing.interrupted_route import GAPS, plan_gaps
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.flip import turned
 from trunnion.plan.prismatic.regions import SetupSpace
@@ -38,6 +39,7 @@ CUTTER_RULES = (
     TOP_CUTTER,
     SIDE_CUTTER,
     FILLET,
+    GAPS,
     *RULES,
     *TURNING_RULES,
 )
@@ -59,6 +61,9 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
                     plan_layers(state, stage, pocket)
                 else:
                     plan_floor(state, stage, pocket)
+        elif stage.cutter == GAPS:
+            for pocket in grounds_in_order(state):
+                plan_gaps(state, stage, pocket)
         elif stage.cutter in RULES:
             plan_holes(state, stage, holes)
         else:

@@ -163,8 +163,9 @@ def recomputed(
     shop: Shop,
     settings: CuttingSettings,
 ) -> Operation:
-    """Return an operation with the data of the tables under these limits; one that keeps its data as it is."""
-    if operation.keeps_data:
+    """Return an operation with the data of the tables under these limits; one that keeps its data as it is, and so does interrupted
+    turning, whose gaps were chosen for its speed."""
+    if operation.keeps_data or operation.tool.locked:
         return operation
     machine = shop.machine(process.setup(operation.setup).machine)
     if isinstance(operation.tool, TurningTool):

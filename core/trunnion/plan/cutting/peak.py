@@ -50,7 +50,7 @@ def with_peak(
     `earlier` are the operations before it in its setup, `choices` a session's settings by full key. Data set by hand keep their numbers.
     Turning meets no more than its data say: they keep the limit already.
     """
-    if not operation.tool.rotates:
+    if not operation.tool.rotates or operation.tool.locked:
         return operation
     meets = _meets(operation, earlier, choices)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from trunnion import tolerance
-from trunnion.geometry.plane.region import Region
+from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool
 from trunnion.plan.development.ground import DevelopedGround
@@ -130,12 +130,12 @@ def layers_over(
     mine = GroundCutter.of(operation)
     levels = []
     for layer in layers_down(ground.top, floor, operation.data.depth, tops, floor):
-        done = _cleared(ground, layer.bottom - floor, mine)
+        done = cleared_by(mine, ground, layer.bottom - floor)
         over = list[DriveLevel]()
         for z in reversed(layer.tops):
             level = _level(ground, layer.top, z, floor, mine, before, (done,))
             over.append(level)
-            done = _cleared(ground, z - floor, mine)
+            done = cleared_by(mine, ground, z - floor)
         whole = _level(ground, layer.top, layer.bottom, floor, mine, before)
         levels += [whole, *(level for level in reversed(over) if level.wanted)]
     return PlaneDrive(
@@ -159,9 +159,9 @@ def _level(
     cleared: Sequence[Region] = (),
 ) -> DriveLevel:
     """Return what a cutter cuts at a height: what of the blank stands there and no earlier cutter took, without what is cleared anyway."""
-    boundary = _free(ground, z - floor, mine)
+    boundary = free_for(ground, z - floor, mine)
     wanted = ground.blank_over(z + WORTH).intersect(boundary)
-    cleared = [*cleared, *(_cleared(ground, z - floor, earlier) for earlier in before)]
+    cleared = [*cleared, *(cleared_by(earlier, ground, z - floor) for earlier in before)]
     for done in cleared:
         wanted = wanted.minus(done).opened(HAIR)
     if cleared and wanted:
@@ -170,20 +170,27 @@ def _level(
     return DriveLevel(top=top, bottom=z, wanted=wanted, boundary=boundary)
 
 
-def _cleared(ground: DevelopedGround, z: float, cutter: GroundCutter) -> Region:
+def cleared_by(cutter: GroundCutter, ground: DevelopedGround, z: float) -> Region:
     """Return what a cutter clears at a height over ground, and a hair more."""
     kept = cutter.tool.radius + cutter.allowance
-    axis_region = _free(ground, z, cutter).offset(-kept)
+    axis_region = free_for(ground, z, cutter).offset(-kept)
     return axis_region.offset(kept + HAIR) if axis_region else axis_region
 
 
 def floor_over(
-    operation: Operation, ground: DevelopedGround, before: Sequence[GroundCutter], stock: float
+    operation: Operation,
+    ground: DevelopedGround,
+    before: Sequence[GroundCutter],
+    stock: float,
+    turned: Region = EMPTY_REGION,
 ) -> PlaneDrive:
-    """Return the ground as a floor on which `stock` mm stand, without what earlier cutters finished."""
+    """Return the ground as a floor on which `stock` mm stand, without what earlier cutters finished and what is `turned`."""
     mine = GroundCutter.of(operation)
-    boundary = _free(ground, 0.0, mine)
-    wanted = remaining_on(ground, ring_of(ground).minus(ground.over(SKIMMED)), before)
+    boundary = free_for(ground, 0.0, mine)
+    wanted = ring_of(ground).minus(ground.over(SKIMMED))
+    if turned:
+        wanted = wanted.minus(turned).opened(HAIR)
+    wanted = remaining_on(ground, wanted, before)
     face = operation.faces[0] if operation.faces else 0
     return PlaneDrive(
         feature=operation.feature,
@@ -203,12 +210,13 @@ def remaining_on(ground: DevelopedGround, wanted: Region, before: Sequence[Groun
     """Return what cutters leave of ground: what their discs stay off, beside things that stand there, counts as left."""
     reach = tangent_reach(ground)
     for earlier in before:
-        axis_region = _free(ground, 0.0, earlier).offset(-earlier.tool.radius)
+        axis_region = free_for(ground, 0.0, earlier).offset(-earlier.tool.radius)
         if axis_region:
             flat = earlier.tool.radius - earlier.tool.corner_radius
             wanted = wanted.minus(axis_region.offset(min(reach, flat))).opened(HAIR)
     return wanted
 
 
-def _free(ground: DevelopedGround, z: float, cutter: GroundCutter) -> Region:
+def free_for(ground: DevelopedGround, z: float, cutter: GroundCutter) -> Region:
+    """Return the area that a cutter's envelope may be in, its tip `z` mm over ground."""
     return ground.free(z, cutter.tool, cutter.around, cutter.above)

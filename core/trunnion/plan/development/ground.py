@@ -214,14 +214,22 @@ class DevelopedGround:
 def sector(development: Development, low: float, high: float, half: float) -> Region:
     """Return the plane's area between two places along the straight lines and two angles (rad) about the axis, left and right of its
     middle; of a cone's plane at most all but a narrow gap."""
+    return sector_between(development, low, high, -half, half)
+
+
+def sector_between(
+    development: Development, low: float, high: float, start: float, end: float
+) -> Region:
+    """Return the plane's area between two places along the straight lines and two angles (rad) about the axis from its middle, the second
+    one above the first; of a cone's plane at most all but a narrow gap."""
     if development.half_turn == 0.0:
-        wide = half * development.radius
-        return Region.rectangle(-wide, low, wide, high)
+        return Region.rectangle(start * development.radius, low, end * development.radius, high)
     share = development.half_turn / math.pi
-    half = min(half, (math.pi - GAP) / share)
-    points = development.at(np.array([low, low, high, high]), np.array([-half, half, half, -half]))
+    most = (math.pi - GAP) / share
+    start, end = max(start, -most), min(end, most)
+    points = development.at(np.array([low, low, high, high]), np.array([start, end, end, start]))
     # Circles about the axis are arcs about the cone's tip, which lies beyond the narrow end.
-    bulge = math.copysign(math.tan(0.5 * half * share), -development.slope)
+    bulge = math.copysign(math.tan(0.25 * (end - start) * share), -development.slope)
     return Region.of(
         [Curve(points=points, bulges=np.array([bulge, 0.0, -bulge, 0.0]), closed=True)]
     )

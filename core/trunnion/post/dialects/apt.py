@@ -141,7 +141,9 @@ def _section(
         yield f"LOADTL/{tool.number},LENGTH,{length}"
         yield f"CUTTER/{diameter},{radius}"
     turns = trimmed(section.spindle, 0)
-    if section.surface_speed > 0.0:
+    if tool.locked:
+        yield "SPINDL/LOCK"
+    elif section.surface_speed > 0.0:
         speed = f"{words.surface[units]},{surface_text(section.surface_speed, units)}"
         yield f"SPINDL/{speed},CLW,MAXRPM,{turns}"
     else:

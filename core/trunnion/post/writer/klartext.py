@@ -220,7 +220,7 @@ class KlartextWriter(ProgramWriter):
 
     def spindle(self, section: ProgramSection, changed: bool) -> Iterator[str]:
         """Yield the blocks that turn the spindle; a tool change has said its speed."""
-        if section.surface_speed > 0.0:
+        if section.surface_speed > 0.0 or section.tool.locked:
             yield from super().spindle(section, changed)
         speed = trimmed(section.spindle, 0)
         if not changed and speed != self.speed:

@@ -182,6 +182,9 @@ class ProgramWriter:
         `changed` says that the tool has just come into it.
         """
         words, turns = self.words, trimmed(section.spindle, 0)
+        if section.tool.locked:
+            yield locked_spindle(words, section)
+            return
         if section.surface_speed > 0.0:
             if not words.surface_speed:
                 raise Refused(
@@ -252,6 +255,17 @@ class ProgramWriter:
                 f"operation {section.operation}: {self.words.title} has no words for a dwell"
             )
         yield f"{code} {letter}{dwell_text(seconds, self.words.dwell_parts)}"
+
+
+def locked_spindle(words: IsoWords, section: ProgramSection) -> str:
+    """Return the word that locks the spindle; raise `Refused` where the control has none."""
+    code = code_of(words, "locked spindle")
+    if not code:
+        raise Refused(
+            f"operation {section.operation}: {words.title} has no word for a locked spindle; mill the gaps (casing.interrupted = no) or "
+            "choose another control"
+        )
+    return code
 
 
 def _range(codes: tuple[str, ...]) -> str:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.material import Material
 from trunnion.model.motion.program import STOPPED, ProgramSection
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
@@ -75,6 +75,9 @@ def load_of(
     # A long block cuts, where it is widest, what its mean says times how much wider it is there, and no more than fits.
     # What is narrower than the stock's cells is missing in the mean of widths: the widest stretch itself is the other bound.
     area = np.maximum(mean_area, np.minimum(mean_area * run.peak, run.widest * run.depth_of_cut))
+    # What is in front of an insert does not change along its short blocks: the stretch's mean says it, without the cells' steps.
+    locked = locked_moves(sections, moves)
+    area = np.where(locked, mean_area, area)
     # Of a stretch's volume a move that meets no material has no share: it runs through the air before or behind it.
     cuts = (area > 0.0) & ~moves.rapid & ((run.removed > 0.0) | (run.engagement > 0.0))
     angle = np.maximum(seen, least_angle(area, radius, flute))
@@ -96,10 +99,12 @@ def load_of(
     drills = axial > 0.0
     chip = per_tooth * np.where(drills, axial, np.sin(np.minimum(angle, math.pi / 2.0)))
     mean = around * np.where(drills, axial, mean_share(angle))
+    insert = insert_chip(area, radius, run.depth_of_cut)
+    chip, mean = np.where(locked, insert, chip), np.where(locked, insert, mean)
     power = np.zeros(len(moves))
     if material is not None:
         power = np.where(
-            spindle > STOPPED,
+            (spindle > STOPPED) | locked,
             rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT),
             0.0,
         )
@@ -115,6 +120,21 @@ def load_of(
         power=power,
         torque=torque,
     )
+
+
+def locked_moves(sections: Sequence[ProgramSection], moves: Moves) -> Bools:
+    """Return which moves (n,) are of a turning insert in a locked spindle: the work moves, and its speed is the feed."""
+    locked = np.array([s.tool.locked for s in sections], dtype=bool)
+    return locked[moves.section] if len(moves) else np.zeros(0, dtype=bool)
+
+
+def insert_chip(area: Floats, radius: Floats, depth: Floats) -> Floats:
+    """Return the mean thickness (n,) mm of the chip of a round insert: the area (n,) mm2 that it takes over the length of its edge in
+    contact, r acos(1 - depth / r), and no more than the cut is deep."""
+    share = np.divide(depth, radius, out=np.zeros_like(depth), where=radius > 0.0)
+    contact = radius * np.arccos(np.clip(1.0 - share, -1.0, 1.0))
+    thick = np.divide(area, contact, out=np.zeros_like(area), where=contact > 0.0)
+    return np.minimum(thick, depth)
 
 
 def drill_shares(sections: Sequence[ProgramSection]) -> Floats:

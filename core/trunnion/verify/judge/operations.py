@@ -9,6 +9,7 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.verdict import BlockProof, OperationProof, Outcome
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
 from trunnion.verify.finish.sweep import residual_by_block
+from trunnion.verify.judge.overload import power_limit, table_turns
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 
@@ -70,7 +71,13 @@ def operation_proofs(
                     float(proof.times.seconds[cuts].sum()),
                 ),
                 power=float(load.power[rows].max(initial=0.0)),
-                power_limit=proof.machine.power_at(section.spindle),
+                power_limit=power_limit(
+                    proof.machine,
+                    section,
+                    table_turns(proof, np.flatnonzero(feeds))
+                    if section.tool.locked
+                    else section.spindle,
+                ),
                 torque=float(load.torque[rows].max(initial=0.0)),
                 chip=float(load.chip[rows].max(initial=0.0)),
             )

@@ -16,7 +16,7 @@ from trunnion import tolerance
 from trunnion.findings import Finding, Fix, error, remark, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.material import Machine, Material
-from trunnion.model.motion.program import ProgramSection
+from trunnion.model.motion.program import STOPPED, ProgramSection
 from trunnion.model.verdict import Offer
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
@@ -52,6 +52,7 @@ def load_findings(
                 _power(proof, section, rows, machine, material, settings),
                 _excess(proof, section, rows, material, settings),
                 _air(proof, section, rows, settings),
+                _locked(proof, section, rows),
             ):
                 found += noted
                 offers += offered
@@ -62,6 +63,13 @@ def allowed_load(section: ProgramSection, material: Material | None) -> AllowedL
     """Return the load that a section's cutting data were chosen for, or the material's tables allow its cutter when that is more."""
     tool = section.cutter
     feed = section.feed or float(section.path.feed.max(initial=0.0))
+    if tool.locked:
+        # A round insert's first cut takes all that lies above its edge, as thick as the depth; later ones less.
+        contact = math.acos(max(1.0 - section.depth / tool.radius, -1.0))
+        segment = tool.radius**2 * (contact - math.sin(contact) * math.cos(contact))
+        return AllowedLoad(
+            rate=segment * feed / MM_PER_METRE or math.inf, chip=section.depth or math.inf
+        )
     share = float(drill_shares((section,))[0])
     if share > 0.0:
         # A drill cuts its whole circle at the feed that was chosen for it.
@@ -98,9 +106,10 @@ def _power(
     material: Material | None,
     settings: ProofSettings,
 ) -> LoadFindings:
-    if material is None or section.spindle_stopped:
+    turns = table_turns(proof, rows) if section.tool.locked else section.spindle
+    if material is None or turns <= STOPPED:
         return [], []
-    limit = machine.power_at(section.spindle) * settings.power
+    limit = power_limit(machine, section, turns) * settings.power
     power = proof.load.power[rows]
     over = power > limit * (1.0 + tolerance.PARAMETRIC)
     if not over.any():
@@ -114,12 +123,14 @@ def _power(
         "verify.power",
         lambda at: (limit / proof.load.power[at]) ** (1.0 / (1.0 - material.force_exponent)),
     )
-    torque = NEWTON_METRES * limit / section.spindle
+    torque = NEWTON_METRES * limit / turns
+    wanted = NEWTON_METRES * proof.load.power[worst] / turns
+    driven = "table" if section.tool.locked else "spindle"
     return [
         error(
             "verify.power",
-            f"{section.operation} asks {proof.load.power[worst]:.1f} kW ({proof.load.torque[worst]:.0f} Nm) of the "
-            f"spindle at {section.spindle:.0f} 1/min, {machine.title} gives {limit:.1f} kW ({torque:.0f} Nm)",
+            f"{section.operation} asks {proof.load.power[worst]:.1f} kW ({wanted:.0f} Nm) of the "
+            f"{driven} at {turns:.0f} 1/min, {machine.title} gives {limit:.1f} kW ({torque:.0f} Nm)",
             section.operation,
             block_of(proof, section, worst),
             remedy=_feed_remedy(proof, section, offers),
@@ -133,6 +144,48 @@ def _power(
             ),
         )
     ], offers
+
+
+def power_limit(machine: Machine, section: ProgramSection, turns: float) -> float:
+    """Return the power (kW) that a machine gives a section at a speed (1/min): its spindle's, or its table's where that is locked."""
+    if not section.tool.locked:
+        return machine.power_at(turns)
+    return machine.work_spindle.power_at(turns) if machine.work_spindle is not None else 0.0
+
+
+def table_turns(proof: SetupProof, rows: Ints) -> float:
+    """Return how fast (1/min) the table turns along moves of a tool that leans from z: the mean of what its directions turn by."""
+    seconds = float(proof.times.seconds[rows].sum())
+    turns = float(np.abs(_turned(proof, rows)).sum()) / (2.0 * math.pi)
+    return turns * SECONDS_PER_MINUTE / seconds if seconds > 0.0 else 0.0
+
+
+def _turned(proof: SetupProof, rows: Ints) -> Floats:
+    """Return the angles (k,) rad that the tool's direction turns about z by along moves."""
+    first, last = proof.moves.start_axis[rows, :2], proof.moves.end_axis[rows, :2]
+    across = first[:, 0] * last[:, 1] - first[:, 1] * last[:, 0]
+    return np.asarray(np.arctan2(across, (first * last).sum(axis=1)))
+
+
+def _locked(proof: SetupProof, section: ProgramSection, rows: Ints) -> LoadFindings:
+    """Return an error where an insert in a locked spindle cuts while the work does not turn under it, or turns back."""
+    if not section.tool.locked:
+        return [], []
+    cuts = rows[proof.stock.removed[rows] > 0.0]
+    # The rake face points to growing angles about z.
+    wrong = cuts[_turned(proof, cuts) <= 0.0]
+    if not len(wrong):
+        return [], []
+    return [
+        error(
+            "verify.locked-insert",
+            f"{section.operation} cuts with {section.tool.name} in a locked spindle while the work does not turn towards its rake face, "
+            f"{len(wrong)} blocks",
+            section.operation,
+            block_of(proof, section, int(wrong[0])),
+            remedy="cut where the table turns the work past the insert, or take a tool that turns",
+        )
+    ], []
 
 
 def _excess(
@@ -223,6 +276,9 @@ def _feed_remedy(proof: SetupProof, section: ProgramSection, offers: list[Offer]
 def _air(
     proof: SetupProof, section: ProgramSection, rows: Ints, settings: ProofSettings
 ) -> LoadFindings:
+    if section.tool.locked:
+        # The table turns on: the way over what stands between gaps is part of the work.
+        return [], []
     air = proof.stock.removed[rows] <= 0.0
     length, seconds = proof.moves.length[rows], proof.times.seconds[rows]
     run, wasted = float(length.sum()), float(seconds[air].sum())

@@ -37,7 +37,9 @@ def limit_findings(
                     remedy="lower the feed",
                 )
             )
-        if s.spindle_stopped:
+        if s.tool.locked:
+            found += _locked_findings(s)
+        elif s.spindle_stopped:
             found += _spindle_findings(s)
         elif (
             not machine.spindle_low
@@ -76,6 +78,20 @@ def _spindle_findings(section: ProgramSection) -> list[Finding]:
             section.operation,
             where,
             remedy="give the spindle speed before the cut",
+        )
+    ]
+
+
+def _locked_findings(section: ProgramSection) -> list[Finding]:
+    """Return an error when a turning insert turns with its spindle."""
+    if section.spindle_stopped:
+        return []
+    return [
+        error(
+            "verify.spindle",
+            f"{section.operation} turns {section.tool.name}, a turning insert, at {section.spindle:.0f} 1/min",
+            section.operation,
+            remedy="lock the spindle",
         )
     ]
 

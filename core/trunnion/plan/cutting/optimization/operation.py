@@ -73,6 +73,7 @@ def can_be_optimised(operation: Operation) -> bool:
     """Return whether there are models for an operation: a mill that cuts with its flank or end. Drills keep their tables."""
     return (
         operation.tool.rotates
+        and not operation.tool.locked
         and operation.kind not in AXIAL
         and operation.cutter.form != DRILL
         and not operation.keeps_data

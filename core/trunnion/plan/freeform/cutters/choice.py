@@ -47,11 +47,12 @@ class CutterStep:
 
 
 def named(shop: Shop, name: str) -> Tool:
-    """Return a cutter of the catalogue by its name; raise `BadInput` when there is none."""
-    for tool in shop.tools:
+    """Return a cutter of the catalogue by its name; raise `BadInput` when there is none. A turning insert is no cutter that mills."""
+    cutters = [t for t in shop.tools if not t.locked]
+    for tool in cutters:
         if tool.name == name:
             return tool
-    by_lower = {t.name.lower(): t.name for t in shop.tools}
+    by_lower = {t.name.lower(): t.name for t in cutters}
     near = [
         by_lower[word] for word in get_close_matches(name.lower(), by_lower, n=NEAR, cutoff=0.0)
     ]

@@ -47,7 +47,10 @@ def goto(state: AptState, line: int, rest: str) -> None:
         state.rapid = False
         return
     state.rapid = False
-    if not state.spindle_on:
+    if tool.locked != state.locked:
+        wanted = "SPINDL/LOCK" if tool.locked else "SPINDL/RPM,speed,CLW"
+        raise BadInput(f"line {line}: a feed move of tool {tool.number} needs {wanted} before it")
+    if not (state.spindle_on or state.locked):
         raise BadInput(f"line {line}: a feed move while the spindle stands; put SPINDL first")
     if state.feed <= 0.0:
         raise BadInput(f"line {line}: a feed move without a feed; put FEDRAT first")

@@ -29,7 +29,7 @@ class AptState:
         self.programs: list[Program] = []
         self.setup: Setup | None = setups[0] if len(setups) == 1 else None
         self.sections = Sections(TiltedPoses(self.setup.clearance if self.setup else 0.0))
-        self.named = self.rapid = self.ended = self.leans = self.spindle_on = False
+        self.named = self.rapid = self.ended = self.leans = self.spindle_on = self.locked = False
         self.tool: AnyTool | None = None
         self.unit, self.feed, self.spindle, self.coolant = 0.0, 0.0, 0.0, "off"
         self.surface_speed, self.feed_mode = 0.0, FeedMode.MINUTE

@@ -29,6 +29,7 @@ def load(state: AptState, line: int, rest: str) -> None:
         )
     state.sections.change_tool()
     state.tool, state.spindle, state.spindle_on, state.surface_speed = tool, 0.0, False, 0.0
+    state.locked = False
 
 
 def cutter(state: AptState, line: int, rest: str) -> None:
@@ -50,8 +51,9 @@ def cutter(state: AptState, line: int, rest: str) -> None:
 
 def spindl(state: AptState, line: int, rest: str) -> None:
     """Take over the spindle's speed or a constant surface speed."""
-    if rest == "OFF":
+    if rest in ("OFF", "LOCK"):
         state.spindle, state.surface_speed, state.spindle_on = 0.0, 0.0, False
+        state.locked = rest == "LOCK"
         return
     given = rest.split(",")
     if any(w in given for w in SURFACE_WORDS):
@@ -65,6 +67,7 @@ def spindl(state: AptState, line: int, rest: str) -> None:
     speed = state.numbers(line, words[0], 1)[0]
     SPINDLE.check(line, "SPINDL ", speed)
     state.spindle, state.surface_speed, state.spindle_on = speed, 0.0, True
+    state.locked = False
 
 
 def coolnt(state: AptState, line: int, rest: str) -> None:
@@ -89,7 +92,7 @@ def _keep_surface_speed(state: AptState, line: int, rest: str) -> None:
         SPINDLE.check(line, "SPINDL ", value)
         if value <= 0.0:
             raise BadInput(f"line {line}: a constant surface speed and its MAXRPM are above zero")
-    state.spindle, state.spindle_on = highest, True
+    state.spindle, state.spindle_on, state.locked = highest, True, False
     state.surface_speed = speed * SURFACE_WORDS[unit_word]
 
 

@@ -60,6 +60,10 @@ class KlartextState:
             raise BadInput(
                 f"line {line}: tool {self.tool.number} is a turning tool; this control turns no work here"
             )
+        if self.tool.locked:
+            raise BadInput(
+                f"line {line}: tool {self.tool.number} is a turning insert, for which this control has no word that locks the spindle"
+            )
         return self.tool
 
     def check_feed(self, line: int, feed: float) -> None:

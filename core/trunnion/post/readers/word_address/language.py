@@ -66,6 +66,7 @@ class ControlLanguage:
         self.machine, self.inverse, self.spindle = (
             self._first(m) for m in ("machine", "inverse time", "spindle")
         )
+        self.locked_spindle = self._first("locked spindle")
         self.turning_plane, self.milling_plane = (
             self._first(m) for m in ("turning plane", "milling plane")
         )

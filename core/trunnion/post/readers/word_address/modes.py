@@ -34,6 +34,7 @@ AFTER_SPEEDS = {
     "tool change": "change_tool",
     "spindle": "start_spindle",
     "no spindle": "stop_spindle",
+    "locked spindle": "lock_spindle",
     "coolant": "switch_coolant",
     "work offset": "set_offset",
     "length": "set_length",
@@ -190,6 +191,7 @@ class Modes:
             )
         state.sections.change_tool()
         state.tool, state.length_on, state.turning, state.over = state.next_tool, False, False, None
+        state.locked = False
 
     def start_spindle(self, block: Block) -> None:
         """Turn the spindle clockwise."""
@@ -197,11 +199,17 @@ class Modes:
             raise BadInput(
                 f"line {block.line}: {self.language.spindle} without a spindle speed; give S"
             )
-        self.state.turning = True
+        self.state.turning, self.state.locked = True, False
 
     def stop_spindle(self, block: Block) -> None:
         """Stop the spindle."""
-        self.state.turning = False
+        self.state.turning = self.state.locked = False
+
+    def lock_spindle(self, block: Block) -> None:
+        """Stop the spindle and hold it at its angle; its speed must be given again."""
+        state = self.state
+        state.turning, state.locked = False, True
+        state.spindle, state.speed_given = 0.0, False
 
     def switch_coolant(self, block: Block) -> None:
         """Set the coolant; of two in one line the later in the table of words counts."""

@@ -89,7 +89,9 @@ class ToolMover:
     def check_feed(self, line: int, tool: AnyTool) -> None:
         """Raise `BadInput` where a tool would feed without a turning spindle or a feed."""
         state = self.state
-        if not state.turning:
+        if tool.locked != state.locked:
+            raise BadInput(f"line {line}: {self.wrong_spindle(tool)}")
+        if not (state.turning or state.locked):
             raise BadInput(
                 f"line {line}: a feed move while the spindle stands; give S and {self.language.spindle} first"
             )
@@ -99,6 +101,14 @@ class ToolMover:
             raise BadInput(
                 f"line {line}: a constant surface speed with T{tool.number}, a tool that rotates; give the spindle speed"
             )
+
+    def wrong_spindle(self, tool: AnyTool) -> str:
+        """Return what to do where the spindle is locked for a tool that turns in it, or is not for one that must stand."""
+        lock = self.language.locked_spindle
+        if not tool.locked:
+            return f"a feed move of T{tool.number} in a locked spindle; give S and {self.language.spindle} first"
+        where = f"put {lock} first" if lock else "this control has no word for that"
+        return f"T{tool.number} is a turning insert and cuts in a locked spindle; {where}"
 
     def drill(self, block: Block, mode: ModalCycle) -> None:
         """Drill a hole as the cycle in force says."""

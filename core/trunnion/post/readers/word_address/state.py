@@ -32,9 +32,10 @@ class ModalState:
     """What the control knows. Lengths are mm in the setup frame.
 
     `unit` mm of a written length; `feed` mm/min, mm a revolution or in inverse time 1/min, 0 when it must be given; `spindle` 1/min as it
-    was given, or the highest while it `keeps_surface` at `surface_speed` in m/min; it turns while `turning`; `tool` is in the spindle,
-    `next_tool` was chosen; `length_on` says that the tool's length counts; `over` is X and Y of a tool above everything whose height is not
-    known yet. `cycle` is in force in place of a motion; it ends at the level where it began (`returns_to_level`) or at its retract plane.
+    was given, or the highest while it `keeps_surface` at `surface_speed` in m/min; it turns while `turning`, is held at its angle while
+    `locked`; `tool` is in the spindle, `next_tool` was chosen; `length_on` says that the tool's length counts; `over` is X and Y of a tool
+    above everything whose height is not known yet. `cycle` is in force in place of a motion; it ends at the level where it began
+    (`returns_to_level`) or at its retract plane.
     Arcs lie in the plane ZX while `in_zx`; `diameters`: X is one.
     """
 
@@ -56,6 +57,7 @@ class ModalState:
     keeps_surface: bool = False
     speed_given: bool = False
     turning: bool = False
+    locked: bool = False
     coolant: str = "off"
     cycle: ModalCycle | None = None
     returns_to_level: bool = True
