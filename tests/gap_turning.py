@@ -3,15 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
+import samples
 from programs import HOLDER
+from seeded.casings import short_ring
 from trunnion.geometry.development import Development
 from trunnion.geometry.frame import WORLD
 from trunnion.model.operation import CuttingData
+from trunnion.model.session import Session
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.pipeline import Engine
 from trunnion.plan.turning.gap_drive import GapDrive, GapPass
-from trunnion.plan.turning.gap_settings import GapSettings
+from trunnion.toolpath.turning.interrupted import GapSettings
+
+RING = {"setup.machine": "Mill-turn 1250", "casing.regions.surface_speed": 8.0}
+"""Choices for a ring of 24 mm: only at a low speed is there time to get out of its gaps."""
+
+
+@cache
+def ring_with_gaps(until: str = "toolpath") -> tuple[Engine, Session]:
+    """Return an engine and the session of a short ring with two bosses, the gaps between them turned, after a step."""
+    engine = Engine()
+    session = engine.open(samples.written(short_ring(), name="ring"))
+    session = engine.with_choices(session, {**RING, "recognize.family": "casing"})
+    return engine, engine.run(session, until=until)
+
 
 BUTTON_12 = Tool(
     number=9,

@@ -12,6 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from gap_turning import ring_with_gaps
 from holed import holed_plate
 from subjects import (
     MILLING,
@@ -91,6 +92,8 @@ def case(name) -> Case:
     if not mine:
         mine, others = of_strategy(name, [holed_plate()])
         alike = alike or others
+    if not (mine or alike):
+        mine, alike = of_strategy(name, [ring_with_gaps()])
     engine, session, operation = mine[-1] if mine else min(alike, key=substitute)
     rows = [o.id for o in session.process.operations]
     before = session.process.operations[: rows.index(operation.id)]

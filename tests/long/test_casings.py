@@ -34,3 +34,13 @@ def test_a_casing_is_turned_and_milled_from_a_bored_blank(part):
     assert_released(session, coverage=0.99)
     turned = [o for o in session.process.operations if not o.tool.rotates]
     assert {o.setup for o in turned} == {"S1", "S2"}
+
+
+@pytest.mark.parametrize("part", [short_ring, bolted_ring])
+def test_gaps_between_bosses_are_turned_on_a_machine_that_turns_and_mills(part):
+    engine = Engine()
+    session = engine.open(samples.written(part(), name="casing"))
+    words = {**CHOICES, "setup.machine": "Mill-turn 1250", "casing.regions.surface_speed": 8.0}
+    session = engine.run(engine.with_choices(session, words))
+    assert_released(session, coverage=0.99)
+    assert [o for o in session.process.operations if o.tool.locked]

@@ -8,11 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flat_parts import operation
 from gap_turning import BUTTON_12
 from milling import mill
 from ringed_block import HIGH, RADIUS, WIDE, ground
-from trunnion.plan.development.drives import GroundCutter
+from trunnion.geometry.plane.region import EMPTY_REGION
+from trunnion.plan.development.drives import GroundCutter, floor_over
 from trunnion.plan.development.gap_passes import gap_passes, turned_region
+from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL
+from trunnion.plan.prismatic.drive import WALL_ALLOWANCE
 
 STEP = 0.5
 CUTTER = GroundCutter(tool=BUTTON_12, allowance=0.0, around=0.5, above=1.0)
@@ -70,3 +74,16 @@ def test_what_is_finished_lies_between_neighbouring_passes_but_for_the_ends_of_g
     points = np.array([[math.pi * RADIUS - 1.0, 30.0], [-math.pi * RADIUS + 1.0, 30.0]])
     assert area.contains(points).all()
     assert not area.contains([[0.0, 30.0]])[0]
+
+
+def test_a_floor_is_milled_without_what_is_turned():
+    made = operation(
+        "floor", "pocket-01", mill(10.0), {WALL_ALLOWANCE: 0.0, AROUND_TOOL: 0.5, ABOVE_TOOL: 1.0}
+    )
+    turned = turned_region(ground(), found(), STEP, lambda lift: 20.0)
+    whole, rest = (floor_over(made, ground(), (), 0.3, area) for area in (EMPTY_REGION, turned))
+    areas = [drive.floors[0].region.area for drive in (whole, rest)]
+    assert turned.area > 0.3 * areas[0]
+    # What a cutter of 10 mm does not come between is no floor any more.
+    left = areas[0] - turned.intersect(whole.floors[0].region).area
+    assert 0.85 * left < areas[1] <= left + 1e-6

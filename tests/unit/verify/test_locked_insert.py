@@ -92,7 +92,7 @@ def test_gaps_are_turned_to_size_without_a_word(drum):
         "verify.air",
     }
     # The rows' gaps without their ends, as wide as the insert's chord at that depth beyond the outer rows.
-    ends = SETTING.end(SPEED, 5.0)
+    ends = SETTING.motion.end(SPEED, 5.0)
     length = RADIUS * (2.0 + 2.2) - 4.0 * ends
     wide = FEED * (ROWS - 1)
     segment = BUTTON_12.radius**2 * (

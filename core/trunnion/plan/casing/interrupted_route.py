@@ -7,7 +7,7 @@ down on, at the ends of gaps and between closer bosses, is milled after it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 
 from trunnion.findings import info
 from trunnion.geometry.plane.region import Region
@@ -22,15 +22,18 @@ from trunnion.plan.cutting.interrupted import INTERRUPTED, interrupted_data
 from trunnion.plan.development.drives import OFF_STOCK, ROUGH, GroundCutter
 from trunnion.plan.development.gap_passes import gap_passes, turned_region
 from trunnion.plan.development.ground import DevelopedGround
+from trunnion.plan.freeform.keys import number
 from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL
 from trunnion.plan.prismatic.drive import WALL_ALLOWANCE
 from trunnion.plan.turning.gap_drive import GapDrive, GapPass
-from trunnion.plan.turning.gap_settings import PER_MINUTE, GapSettings
+from trunnion.plan.turning.gap_motion import PER_MINUTE, GapMotion
 from trunnion.recognize.casing.kinds import BOTTOM
-from trunnion.settings import Value, checked, choose
+from trunnion.settings import Value
 from trunnion.shop import Stage
 from trunnion.units import MM_PER_METRE, trimmed
 
+MOTION = "turning.interrupted."
+"""How the keys of the strategy's settings begin."""
 GAPS = "gaps"
 """Word that a typical plan may give for the tool of a stage of interrupted turning."""
 WORTH = 0.02
@@ -97,18 +100,23 @@ def gap_drive(
             GroundCutter.of(operation),
             roughed,
             operation.data,
-            checked(choose(GapSettings, operation.choices)),
+            _motion_of(operation),
         ),
         clearance=clearance,
         faces=operation.faces,
     )
 
 
+def _motion_of(operation: Operation) -> GapMotion:
+    """Return how an operation's tool moves in gaps."""
+    return GapMotion(**{f.name: number(operation, MOTION + f.name) for f in fields(GapMotion)})
+
+
 def turned_of(operation: Operation, ground: DevelopedGround, roughed: list[Operation]) -> Region:
     """Return the area of ground that an operation of interrupted turning finishes."""
-    settings = checked(choose(GapSettings, operation.choices))
+    motion = _motion_of(operation)
     drive = gap_drive(operation, ground, roughed, 0.0)
-    return _finished(ground, drive.passes, operation.data, settings)
+    return _finished(ground, drive.passes, operation.data, motion)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -160,7 +168,7 @@ def _tried(
         depth=depth,
         ridge=state.settings.scallop,
     )
-    settings = _settings(
+    motion = _motion(
         regions,
         data.speed,
         lift,
@@ -173,35 +181,32 @@ def _tried(
         around=cutter_clearance(state, ground, tool, pocket, state.route.wall_allowance),
         above=state.route.reach_clearance,
     )
-    passes = _passes(ground, cutter, roughed, data, settings)
+    passes = _passes(ground, cutter, roughed, data, motion)
     choices: dict[str, Value] = {
         WALL_ALLOWANCE: cutter.allowance,
         AROUND_TOOL: cutter.around,
         ABOVE_TOOL: cutter.above,
-        **{
-            f"gaps.{name}": getattr(settings, name)
-            for name in ("retract_speed", "acceleration", "margin", "shortest", "threshold")
-        },
+        **{f"{MOTION}{name}": value for name, value in asdict(motion).items()},
     }
     return _Tried(
         tool=tool,
         data=data,
         choices=choices,
-        shortest_gap=min((settings.needed(data.speed, p.lift) for p in passes), default=0.0),
-        finished=_finished(ground, passes, data, settings),
+        shortest_gap=min((motion.needed(data.speed, p.lift) for p in passes), default=0.0),
+        finished=_finished(ground, passes, data, motion),
     )
 
 
-def _settings(
+def _motion(
     regions: RegionSettings, speed: float, lift: float, retract: float, acceleration: float
-) -> GapSettings:
-    """Return what regions ask of gaps as settings of the strategy, at a speed (m/min), for an axis that retracts at a speed (m/min) and
+) -> GapMotion:
+    """Return what regions ask of gaps as the strategy takes it, at a speed (m/min), for an axis that retracts at a speed (m/min) and
     an acceleration (mm/s2): the shop's factor is in the shortest cut."""
-    plain = replace(
-        choose(GapSettings, {}),
+    plain = GapMotion(
         retract_speed=retract,
         acceleration=acceleration,
         margin=regions.margin,
+        shortest=0.0,
         threshold=regions.threshold,
     )
     cut = regions.shop_factor * speed * PER_MINUTE * regions.shortest_cut
@@ -214,14 +219,14 @@ def _passes(
     cutter: GroundCutter,
     roughed: list[Operation],
     data: CuttingData,
-    settings: GapSettings,
+    motion: GapMotion,
 ) -> tuple[GapPass, ...]:
     return gap_passes(
         ground,
         cutter,
         [GroundCutter.of(o) for o in roughed],
         data.feed_per_tooth,
-        lambda lift: settings.needed(data.speed, lift),
+        lambda lift: motion.needed(data.speed, lift),
     )
 
 
@@ -229,8 +234,8 @@ def _finished(
     ground: DevelopedGround,
     passes: tuple[GapPass, ...],
     data: CuttingData,
-    settings: GapSettings,
+    motion: GapMotion,
 ) -> Region:
     return turned_region(
-        ground, passes, data.feed_per_tooth, lambda lift: settings.end(data.speed, lift)
+        ground, passes, data.feed_per_tooth, lambda lift: motion.end(data.speed, lift)
     )

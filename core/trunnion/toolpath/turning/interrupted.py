@@ -19,9 +19,10 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.turning.gap_drive import GapDrive, GapPass
-from trunnion.plan.turning.gap_settings import PER_MINUTE, GapSettings
+from trunnion.plan.turning.gap_motion import PER_MINUTE, GapMotion
 from trunnion.plan.turning.retract import travelled
 from trunnion.progress import Progress
+from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import SECONDS_PER_MINUTE
@@ -31,6 +32,71 @@ STEPS = 12
 """Blocks of a way out of a gap, or back into it."""
 LIFTED_CHORD = 0.1
 """mm that blocks of a lifted tool may be off their circles."""
+
+
+@settings("turning.interrupted")
+class GapSettings:
+    """How the tool leaves gaps and comes back while the table turns; the planner of a casing gives all but the chord."""
+
+    retract_speed: float = setting(
+        20.0,
+        unit="m/min",
+        low=0.1,
+        high=500.0,
+        label="Speed of retracting",
+        help="Highest speed of the axis that takes the tool out of the gap and back.",
+    )
+    acceleration: float = setting(
+        3000.0,
+        unit="mm/s2",
+        low=1.0,
+        high=50000.0,
+        label="Acceleration",
+        help="Acceleration of that axis.",
+    )
+    margin: float = setting(
+        5.0,
+        unit="mm",
+        low=0.0,
+        high=1000.0,
+        label="Margin",
+        help="Length of a gap that is kept free for reaction times, half of it at either end.",
+    )
+    shortest: float = setting(
+        30.0,
+        unit="mm",
+        low=0.0,
+        high=10000.0,
+        label="Shortest cut",
+        help="Length of ground that must be cut in a gap to be worth the way in and out.",
+    )
+    threshold: float = setting(
+        0.0,
+        unit="mm",
+        low=0.0,
+        high=10000.0,
+        label="Shortest gap",
+        help="Length that a gap must have in any case; 0: what its ends and the shortest cut need.",
+    )
+    chord: float = setting(
+        0.004,
+        unit="mm",
+        low=0.0005,
+        high=0.1,
+        label="Chord error",
+        help="How far blocks may be off their circles, half of it on either side.",
+    )
+
+    @property
+    def motion(self) -> GapMotion:
+        """How the tool moves in gaps."""
+        return GapMotion(
+            retract_speed=self.retract_speed,
+            acceleration=self.acceleration,
+            margin=self.margin,
+            shortest=self.shortest,
+            threshold=self.threshold,
+        )
 
 
 @strategy(settings=GapSettings, drive=GapDrive, tool_axis=leaning_axis)
@@ -50,7 +116,7 @@ def interrupted(
     short = 0
     for each in progress.each(drive.passes):
         radius = float(drive.development.radius_at(np.array([each.along]))[0])
-        least = 2.0 * settings.end(data.speed, each.lift) / radius
+        least = 2.0 * settings.motion.end(data.speed, each.lift) / radius
         gaps = tuple(g for g in each.gaps if g[1] - g[0] > least)
         short += len(each.gaps) - len(gaps)
         way.add(replace(each, gaps=gaps))
@@ -64,7 +130,7 @@ def _left(short: int, tool: Tool) -> tuple[Finding, ...]:
         warning(
             "turning.gap-too-short",
             f"{short} gaps are no longer than {tool.name} takes out of them and in again: they are not turned",
-            remedy="choose a lower speed of the ground, or a quicker retract (gaps.retract_speed)",
+            remedy="choose a lower speed of the ground, or a quicker retract (turning.interrupted.retract_speed)",
         ),
     )
 
@@ -74,6 +140,7 @@ class _Way:
 
     def __init__(self, drive: GapDrive, settings: GapSettings, speed: float) -> None:
         self.drive, self.settings, self.speed = drive, settings, speed
+        self.motion = settings.motion
         self._rows: list[Floats] = []
         self._marks: list[Ints] = []
         self._turn: float | None = None
@@ -93,14 +160,14 @@ class _Way:
     def _gap(self, each: GapPass, radius: float, start: float, end: float) -> None:
         """Come to a gap lifted, go down, cut and go up again; angles in rad as the table has turned."""
         margin = 0.5 * self.settings.margin / radius
-        ramp = self.settings.end(self.speed / PER_MINUTE, each.lift) / radius - margin
+        ramp = self.motion.end(self.speed / PER_MINUTE, each.lift) / radius - margin
         begin, stop = start + margin, end - margin
         self._lifted_to(each, radius, begin)
         share = np.arange(1, STEPS + 1) / STEPS
         half = 0.5 * self.settings.chord
         down = each.lift - half
         out = travelled(
-            share * self.settings.time_out(each.lift),
+            share * self.motion.time_out(each.lift),
             down,
             self.settings.retract_speed * PER_MINUTE,
             self.settings.acceleration,

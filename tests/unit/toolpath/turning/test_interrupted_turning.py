@@ -69,7 +69,7 @@ def test_the_tool_is_down_in_every_gap_and_nowhere_else(rows, slope):
         own = np.abs(along - each.along) < 1e-9
         for start, end in each.gaps:
             radius = float(made.development.radius_at(np.array([each.along]))[0])
-            off = SETTINGS.end(data.speed, lift) / radius
+            off = SETTINGS.motion.end(data.speed, lift) / radius
             inside = own & (path.mark == Mark.CUT)
             at = (turns[inside] - start) % (2.0 * math.pi)
             cut = at[at < end - start]
