@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from trunnion.model.operation import CuttingData
+from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.repair import words_of
 from trunnion.model.session import Session
 from trunnion.model.spindle import FeedMode, SpindleMode
@@ -72,8 +72,12 @@ def turns(session: Session) -> dict[str, str]:
     return {s.name: notes.get(s.name) or turn_words(setups[0], s) for s in setups[1:]}
 
 
-def spindle(data: CuttingData) -> str:
-    """Return a spindle speed as the setup sheet has it: 1/min, or the constant surface speed and the highest."""
+def spindle(operation: Operation) -> str:
+    """Return a spindle speed as the setup sheet has it: 1/min, the constant surface speed and the highest, or the table's speed under a
+    locked spindle."""
+    data = operation.data
+    if operation.tool.locked:
+        return f"locked, table {data.spindle:.1f}"
     if data.spindle_mode is SpindleMode.RPM:
         return f"{data.spindle:.0f}"
     return f"{data.speed:.0f} m/min, at most {data.highest_spindle:.0f}"

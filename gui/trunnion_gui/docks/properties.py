@@ -45,10 +45,12 @@ def tool_rows(operation: Operation) -> Rows:
     return rows
 
 
-def speed_rows(data: CuttingData) -> Rows:
-    """Return spindle speed and feed, for an operation without fields for them."""
+def speed_rows(operation: Operation) -> Rows:
+    """Return spindle speed, or the table's under a locked spindle, and feed, for an operation without fields for them."""
+    data = operation.data
+    name = tr("Table speed") if operation.tool.locked else tr("Spindle speed")
     return [
-        (tr("Spindle speed"), f"{amount(data.spindle, 0)} 1/min"),
+        (name, f"{amount(data.spindle, 0)} 1/min"),
         (tr("Feed"), f"{amount(data.feed, 0)} mm/min"),
     ]
 
@@ -165,7 +167,7 @@ class PropertiesDock(QScrollArea):
             *tool_rows(o),
             (tr("Holder"), o.tool.holder_name),
             (tr("Cutting speed"), f"{amount(data.speed, 0)} m/min"),
-            *([] if self._is_changeable(o) else speed_rows(data)),
+            *([] if self._is_changeable(o) else speed_rows(o)),
             *mode_rows(data),
             (tr("Feed per tooth"), f"{amount(data.feed_per_tooth)} mm"),
             (tr("Depth of cut"), f"{amount(data.depth)} mm"),
@@ -228,7 +230,8 @@ class PropertiesDock(QScrollArea):
 
     def _is_changeable(self, operation: Operation) -> bool:
         """Return whether there are fields for an operation's tool, speed and feed: once the worker has said what may be chosen."""
-        return operation.tool.rotates and OPERATION in self._document.groups
+        tool = operation.tool
+        return tool.rotates and not tool.locked and OPERATION in self._document.groups
 
     def _change_data(self, id: str, key: str, label: str, value: Value) -> None:
         """Ask for a change once: a line that is left by the return key and then loses the focus signals twice."""

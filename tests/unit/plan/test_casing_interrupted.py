@@ -9,8 +9,11 @@ import pytest
 
 from gap_turning import RING
 from subjects import own, part_of
+from trunnion.geometry.frame import WORLD
+from trunnion.model.blank import Revolved
 from trunnion.pipeline import Engine
 from trunnion.plan.casing.interrupted_route import turns_and_mills
+from trunnion.plan.casing.turning_route import lathe_for
 from trunnion.plan.cutting.interrupted import interrupted_data
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.settings import choose
@@ -95,3 +98,26 @@ def test_the_speed_is_bounded_by_table_and_feed(wanted, radius, rule):
     assert fastest <= 40.0 * (1.0 + 1e-9)
     assert data.feed_per_tooth**2 / (8.0 * insert.radius) <= 0.006 * (1.0 + 1e-9)
     assert data.power < data.power_limit
+
+
+def test_ground_that_the_machine_brings_too_slowly_is_milled_and_told():
+    # Axis C turns a ring of 24 mm at 15 m/min at most.
+    session = routed(casing__regions__surface_speed=200.0, casing__regions__lowest_speed=100.0)
+    assert "interrupted" not in kinds(session)
+    (told,) = [f for f in session.process.findings if f.code == "route.gaps-milled"]
+    assert "inserts need 100" in told.text
+
+
+def test_a_machine_that_turns_and_mills_is_no_lathe():
+    shop = load_shop()
+    machine = shop.machine("Mill-turn 1250")
+    blank = Revolved(
+        frame=WORLD,
+        outline=np.array([[500.0, 0.0], [660.0, 0.0], [660.0, 100.0], [500.0, 100.0]]),
+        material="Ti-6Al-4V",
+        density=4.4,
+    )
+    # It would take this blank, which is too large for the lathes.
+    assert 2.0 * blank.radius < machine.work_spindle.largest_diameter
+    assert lathe_for(shop, "", blank)[0] is None
+    assert lathe_for(shop, machine.name, blank)[0] is None

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields, replace
 
-from trunnion.findings import info
+from trunnion.findings import Finding, info
 from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.material import Machine
@@ -49,6 +49,10 @@ def plan_gaps(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
     if not state.settings.interrupted or not turns_and_mills(machine) or not roughed:
         return
     tried = [_tried(state, pocket, ground, roughed, tool) for tool in _inserts(state)]
+    least = min(state.regions.lowest_speed, state.regions.surface_speed)
+    if tried and max(t.data.speed for t in tried) < least:
+        state.findings.append(_too_slow(stage, pocket, tried[0].data.speed, least))
+        return
     most = max((t.area for t in tried), default=0.0)
     if most < WORTH * ground.band(*ground.ends).area:
         return
@@ -81,6 +85,16 @@ def plan_gaps(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
             pocket.id,
             remedy="set the insert so at the angle that the spindle is locked at, and measure it there",
         )
+    )
+
+
+def _too_slow(stage: Stage, pocket: Feature, speed: float, least: float) -> Finding:
+    return info(
+        "route.gaps-milled",
+        f"{stage.name} of {pocket.id}: the machine brings the ground past the tool at {trimmed(speed, 1)} m/min, inserts need "
+        f"{trimmed(least, 1)}: its gaps are milled",
+        pocket.id,
+        remedy="choose a machine whose table turns faster, or an insert's grade for lower speeds (casing.regions.lowest_speed)",
     )
 
 

@@ -135,7 +135,10 @@ def after_turning(
 def lathe_for(
     shop: Shop, wanted: str, blank: Revolved
 ) -> tuple[Machine | None, tuple[Finding, ...]]:
-    """Return the machine that is wanted for turning, or the smallest one that turns the blank; or why there is none."""
+    """Return the machine that is wanted for turning, or the smallest one that turns the blank; or why there is none.
+
+    One with rotary axes is not taken: no control here has words for work that turns on it.
+    """
     width, height = 2.0 * blank.radius, float(np.ptp(blank.outline[:, 1]))
     known = (
         [shop.machine(wanted)] if wanted else sorted(shop.machines.values(), key=_largest_diameter)
@@ -153,7 +156,8 @@ def lathe_for(
 
 
 def _largest_diameter(machine: Machine) -> float:
-    return machine.work_spindle.largest_diameter if machine.work_spindle is not None else 0.0
+    turns = machine.work_spindle if not machine.rotary else None
+    return turns.largest_diameter if turns is not None else 0.0
 
 
 def _planned(
