@@ -99,6 +99,10 @@ class Form(QWidget):
         """Return the field of a setting."""
         return self._fields[key]
 
+    def fields(self) -> tuple[QWidget, ...]:
+        """Return all fields, from top to bottom."""
+        return tuple(self._fields.values())
+
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.FocusIn:
             self._visit += 1

@@ -403,8 +403,8 @@ def test_only_the_settings_of_the_parts_own_family_are_offered(shown):
     panel = shown.panels["recognize"]
     panel.fold(False)
     assert (
-        panel._by_name["recognize.surface"].isVisible()
-        and not panel._by_name["recognize.panel"].isVisible()
+        panel.settings.group("recognize.surface").isVisible()
+        and not panel.settings.group("recognize.panel").isVisible()
     )
 
 

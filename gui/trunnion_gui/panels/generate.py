@@ -26,7 +26,7 @@ class GeneratePanel(Panel):
 
     def build(self) -> None:
         self._rejected_names: tuple[str, ...] | None = None
-        self.content.addLayout(self._settings)
+        self.content.addLayout(self.settings)
         self.content.addWidget(
             self.buttons("step.generate", "step.verify", primary="step.generate")
         )

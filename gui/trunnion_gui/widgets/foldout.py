@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
@@ -45,6 +47,8 @@ class Foldout(QFrame):
     """A folded or open section. Its header never moves when a job ends: state and time have their own fixed places."""
 
     toggled = Signal(bool)
+    makes: Callable[[], None] | None
+    """Makes what stands in the body, once, when the body is opened first; None where all is there."""
 
     def __init__(
         self, title: str, number: int = 0, *, is_open: bool = False, is_group: bool = False
@@ -55,6 +59,7 @@ class Foldout(QFrame):
         self.state = ""
         self._drawn: tuple[str, Theme | None] = ("", None)
         self.is_folded = not is_open
+        self.makes = None
         self.header = _Header()
         self._arrow, self._state, self._words, self._time = QLabel(), QLabel(), QLabel(), QLabel()
         self.title = QLabel(title)
@@ -75,10 +80,18 @@ class Foldout(QFrame):
 
     def fold(self, folded: bool) -> None:
         """Fold the body away, or open it."""
+        if not folded:
+            self.make_body()
         self.is_folded = folded
         self.body.setVisible(not folded)
         self._draw_arrow()
         self.toggled.emit(not folded)
+
+    def make_body(self) -> None:
+        """Make what stands in the body where `makes` is left for that; done when the body is opened first."""
+        makes, self.makes = self.makes, None
+        if makes is not None:
+            makes()
 
     def show_state(self, state: str, seconds: str) -> None:
         """Show a state (a key of `STATES`) and the time it took."""

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QWidget
 
-from trunnion_gui import edits
 from trunnion_gui.actions import Registry
 from trunnion_gui.document import Document
 from trunnion_gui.families.views import Views
@@ -15,15 +14,8 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.look.words import duration
 from trunnion_gui.widgets.foldout import Foldout
-from trunnion_gui.worker.requests import SettingsGroup
+from trunnion_gui.widgets.step_settings import StepSettings
 from trunnion_gui.worker.steps import STEPS, PanelStage, joined_state
-
-_FEW = 4
-"""The first group of a step is shown open when it has at most so many settings; everything else is folded."""
-
-
-_MANY = 3
-"""More groups than this are folded once more, all together."""
 
 
 class Panel(Foldout):
@@ -42,13 +34,9 @@ class Panel(Foldout):
         self.registry = registry
         self.views = views
         self.theme: Theme | None = None
-        self.forms: list[Form] = []
-        self._groups: list[Foldout] = []
-        self._by_name: dict[str, QWidget] = {}
         self._main: list[QPushButton] = []
         self._settings_shown: Mapping | None = None
-        self._settings = QVBoxLayout()
-        self._settings.setSpacing(6)
+        self.settings = StepSettings(document, views, folds_first=self.folds_settings)
         self.result = QLabel()
         self.result.setWordWrap(True)
         self.result.setObjectName("muted")
@@ -58,7 +46,7 @@ class Panel(Foldout):
 
     def build(self) -> None:
         """Lay the panel out: settings, main button, result."""
-        self.content.addLayout(self._settings)
+        self.content.addLayout(self.settings)
         self.content.addWidget(self.button(self.command, primary=True))
         self.content.addWidget(self.result)
 
@@ -101,11 +89,10 @@ class Panel(Foldout):
         self.show_state(
             state, duration(taken) if any(s in records for s in self.stage.steps) else ""
         )
-        if document.groups is not self._settings_shown:
-            self._make_forms()
-        for form in self.forms:
-            form.fill(document.session.choices)
-        self._show_own_groups()
+        if not self.is_folded:
+            self.make_body()
+        self.settings.fill(document.session.choices)
+        self.settings.show_own(document.shown.recognition)
         self._stress(state)
         self.fill()
         self.result.setVisible(bool(self.result.text()))
@@ -129,59 +116,24 @@ class Panel(Foldout):
     def use_theme(self, theme: Theme) -> None:
         self.theme = theme
         super().use_theme(theme)
-        for group in self._groups:
-            group.use_theme(theme)
+        self.settings.use_theme(theme)
         self.fill()
 
-    def _make_forms(self) -> None:
-        self._settings_shown = self.document.groups
-        groups = [
-            g for step in self.stage.steps for g in self.document.groups.get(step, ()) if g.settings
-        ]
-        inside = self._settings
-        if self.views.most_offered([g.name for g in groups]) > _MANY:
-            whole = self._folded(tr("Settings"))
-            self._settings.addWidget(whole)
-            inside = whole.content
-        for n, group in enumerate(groups):
-            form = self._form(group)
-            if n == 0 and len(group.settings) <= _FEW and not self.folds_settings:
-                self._settings.addWidget(form)
-                self._by_name[group.name] = form
-                continue
-            foldout = self._folded(tr("{group} settings").format(group=tr(group.title)))
-            foldout.content.addWidget(form)
-            inside.addWidget(foldout)
-            self._by_name[group.name] = foldout
+    @property
+    def forms(self) -> tuple[Form, ...]:
+        """The forms of all settings of the step, also of those that nobody has unfolded yet."""
+        self.make_body()
+        return self.settings.forms
 
-    def _show_own_groups(self) -> None:
-        """Hide the settings of families that the part has nothing of."""
-        found = self.document.shown.recognition
-        for name, widget in self._by_name.items():
-            widget.setVisible(self.views.offers(name, found))
-
-    def _folded(self, title: str) -> Foldout:
-        foldout = Foldout(title, is_group=True)
-        if self.theme is not None:
-            foldout.use_theme(self.theme)
-        self._groups.append(foldout)
-        return foldout
-
-    def _form(self, group: SettingsGroup) -> Form:
-        form = Form(group.settings)
-        labels = {s.key: s.label for s in group.settings}
-        form.changed.connect(
-            lambda key, value, gesture: self.document.choose(
-                key, f"{tr(labels[key])}: {value}", value, gesture
-            )
-        )
-        form.reset.connect(
-            lambda key: self.document.edit(
-                f"{tr(labels[key])}: default", edits.without_choices(key)
-            )
-        )
-        self.forms.append(form)
-        return form
+    def make_body(self) -> None:
+        """Add the settings once the worker has sent them: when the panel is opened first, or at once while it stands open."""
+        super().make_body()
+        groups = self.document.groups
+        if groups is self._settings_shown:
+            return
+        self._settings_shown = groups
+        own = [g for step in self.stage.steps for g in groups.get(step, ()) if g.settings]
+        self.settings.show_groups(own, before=self._main[0])
 
 
 def rule() -> QFrame:
