@@ -26,6 +26,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from trunnion.findings import Cancelled, TrunnionError
 from trunnion.progress import Progress
 from trunnion_gui.worker.requests import Work, is_writing, work_of
+from trunnion_gui.worker.session_changes import SharedSession, session_of
 from trunnion_gui.worker.shared_memory import packed, unpacked
 
 ENGINE = "trunnion.pipeline:Engine"
@@ -77,11 +78,12 @@ def serve(pipe: Connection, factory: str, cancelled: Any) -> None:
             request = unpacked(pipe.recv())
         except (EOFError, OSError):
             return
+        known = SharedSession(session_of(request.arguments))
         try:
             if engine is None:
                 module, _, name = factory.partition(":")
                 engine = getattr(importlib.import_module(module), name)()
-            reply = _reply_to(engine, request, pipe, cancelled)
+            reply = _reply_to(engine, request, pipe, cancelled, known)
         except Cancelled:
             reply = Reply(request.number, "cancelled")
         except TrunnionError as reason:
@@ -89,7 +91,7 @@ def serve(pipe: Connection, factory: str, cancelled: Any) -> None:
         except Exception as fault:  # noqa: BLE001 - the outermost loop
             reply = Reply(request.number, "failed", text=_fault_line(request, fault))
         try:
-            pipe.send(packed(reply))
+            pipe.send(packed(reply, known, request.number))
         except OSError:
             return
 
@@ -103,21 +105,26 @@ def _fault_line(request: Request, fault: Exception) -> str:
     return f"{what} met a fault of the program ({type(fault).__name__} at {where}: {fault})"
 
 
-def _reply_to(engine: Any, request: Request, pipe: Connection, cancelled: Any) -> Reply:
+def _reply_to(
+    engine: Any, request: Request, pipe: Connection, cancelled: Any, known: SharedSession
+) -> Reply:
     sent_at, words = 0.0, ""
+
+    def send(reply: Reply) -> None:
+        pipe.send(packed(reply, known, request.number))
 
     def report(fraction: float, text: str) -> None:
         nonlocal sent_at, words
         now = time.monotonic()
         if now - sent_at >= (_SEND_EVERY_S if text == words else _SEND_NEWS_S):
             sent_at, words = now, text
-            pipe.send(packed(Reply(request.number, "progress", text=text, fraction=fraction)))
+            send(Reply(request.number, "progress", text=text, fraction=fraction))
 
     def send_event(kind: str, value: Any) -> None:
         if kind == "progress":
-            pipe.send(packed(Reply(request.number, kind, text=value[1], fraction=value[0])))
+            send(Reply(request.number, kind, text=value[1], fraction=value[0]))
         else:
-            pipe.send(packed(Reply(request.number, kind, value=value)))
+            send(Reply(request.number, kind, value=value))
 
     progress = Progress(report, lambda: cancelled.value >= request.number)
     progress.check()
@@ -143,6 +150,7 @@ class Worker(QObject):
         self._number = 0
         self._generation = 0
         self._awaited: list[Request] = []
+        self._known: dict[int, SharedSession] = {}
         self._crashes = 0
         self._process: Any = None
         self._pipe: Connection | None = None
@@ -168,9 +176,7 @@ class Worker(QObject):
             self._start()
             self.restarted.emit()
         self._number += 1
-        request = Request(self._number, command, arguments)
-        self._awaited.append(request)
-        self._outgoing.put(request)
+        self._put(Request(self._number, command, arguments))
         return self._number
 
     def cancel(self, number: int) -> None:
@@ -192,11 +198,16 @@ class Worker(QObject):
         self._awaited.clear()
         atexit.unregister(self.stop)
 
+    def _put(self, request: Request) -> None:
+        self._awaited.append(request)
+        self._known[request.number] = SharedSession(session_of(request.arguments))
+        self._outgoing.put(request)
+
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
         self._generation += 1
         self._cancelled = context.RawValue("q", 0)
-        self._outgoing = queue.SimpleQueue()
+        self._outgoing, self._known = queue.SimpleQueue(), {}
         here, there = context.Pipe()
         self._pipe = here
         # Not a daemon: reading a part starts a child process of its own.
@@ -205,10 +216,10 @@ class Worker(QObject):
         )
         self._process.start()
         there.close()
-        for target in (_send_all, _receive_all):
-            threading.Thread(
-                target=target, args=(self, self._generation, here, self._outgoing), daemon=True
-            ).start()
+        sending = (here, self._outgoing)
+        receiving = (self, self._generation, here, self._outgoing, self._known)
+        for target, arguments in ((_send_all, sending), (_receive_all, receiving)):
+            threading.Thread(target=target, args=arguments, daemon=True).start()
 
     def _end(self) -> None:
         if self._process is None:
@@ -234,8 +245,7 @@ class Worker(QObject):
         self._start()
         self.restarted.emit()
         for request in waiting:
-            self._awaited.append(request)
-            self._outgoing.put(request)
+            self._put(request)
         self.replied.emit(Reply(number, kind, text=text))
 
     def _receive(self, generation: int, reply: Reply | None) -> None:
@@ -275,9 +285,7 @@ def _kill(process: Any) -> None:
     process.kill()
 
 
-def _send_all(
-    worker: Worker, generation: int, pipe: Connection, outgoing: queue.SimpleQueue[Request | None]
-) -> None:
+def _send_all(pipe: Connection, outgoing: queue.SimpleQueue[Request | None]) -> None:
     while (request := outgoing.get()) is not None:
         try:
             pipe.send(packed(request))
@@ -286,13 +294,20 @@ def _send_all(
 
 
 def _receive_all(
-    worker: Worker, generation: int, pipe: Connection, outgoing: queue.SimpleQueue[Request | None]
+    worker: Worker,
+    generation: int,
+    pipe: Connection,
+    outgoing: queue.SimpleQueue[Request | None],
+    known: dict[int, SharedSession],
 ) -> None:
     while True:
         try:
-            reply: Reply | None = unpacked(pipe.recv())
+            message = pipe.recv()
+            reply: Reply | None = unpacked(message, known.get(message.number))
         except (EOFError, OSError, TypeError, ValueError):
             reply = None
+        if reply is not None and reply.is_last:
+            known.pop(reply.number, None)
         with contextlib.suppress(RuntimeError):  # the window is gone
             worker._arrived.emit(generation, reply)
         if reply is None:
