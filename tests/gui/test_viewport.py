@@ -10,6 +10,8 @@ from PySide6.QtTest import QTest
 
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Revolved
+from trunnion.report import palette as palettes
+from trunnion.report.colour_choice import distinct_colours
 from trunnion_gui.look.colours import kind_colour, motions, rgb
 from trunnion_gui.worker.drawing import border_edges
 
@@ -253,3 +255,20 @@ def test_many_changes_in_one_turn_are_drawn_once(recognized, qtbot):
     qtbot.waitUntil(lambda: bool(drawn))
     qtbot.wait(50)
     assert len(drawn) <= 2
+
+
+def test_colours_of_features_are_worked_out_once_for_table_and_picture(
+    window, part_file, idle, monkeypatch
+):
+    worked_out = []
+    monkeypatch.setattr(
+        palettes,
+        "distinct_colours",
+        lambda *given: worked_out.append(1) or distinct_colours(*given),
+    )
+    window.document.files.open(part_file)
+    idle(window)
+    window.document.run("recognize", "Recognize")
+    idle(window)
+    window.registry.run("view.paths")
+    assert len(worked_out) == 1

@@ -72,9 +72,18 @@ def kinds() -> tuple[str, ...]:
     return (*palette().kinds, OTHER)
 
 
+_last_colours: list[tuple[Recognition, dict[str, str]]] = []
+
+
 def feature_colours(found: Recognition) -> dict[str, str]:
-    """Return the colour of every feature by id: its kind's, or one of its own."""
-    return {id: hexed(colour) for id, colour in palette().features(found, found.neighbours).items()}
+    """Return the colour of every feature by id: its kind's, or one of its own.
+
+    Those of the last recognition are kept: table, picture and legend show the same one.
+    """
+    if not _last_colours or _last_colours[0][0] is not found:
+        given = palette().features(found, found.neighbours)
+        _last_colours[:] = [(found, {id: hexed(colour) for id, colour in given.items()})]
+    return _last_colours[0][1]
 
 
 def motions() -> dict[str, str]:
