@@ -257,6 +257,16 @@ def test_many_changes_in_one_turn_are_drawn_once(recognized, qtbot):
     assert len(drawn) <= 2
 
 
+def test_what_lies_above_the_picture_is_painted_without_drawing_it_early(recognized, qtbot):
+    scene, drawn = recognized.viewport.scene, []
+    scene.view.grab()
+    scene.view.render_window.AddObserver("StartEvent", lambda *_: drawn.append(1))
+    scene.view.render()
+    scene.view.repaint()
+    assert not drawn
+    qtbot.waitUntil(lambda: bool(drawn))
+
+
 def test_colours_of_features_are_worked_out_once_for_table_and_picture(
     window, part_file, idle, monkeypatch
 ):

@@ -11,13 +11,14 @@ import sys
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import QRect, QSize, Qt, QTimer
 from PySide6.QtGui import (
     QGuiApplication,
     QImage,
     QMouseEvent,
     QPainter,
     QPaintEvent,
+    QPixmap,
     QResizeEvent,
     QWheelEvent,
 )
@@ -53,6 +54,10 @@ class PaintedView(QWidget):
         from vtkmodules.vtkRenderingUI import vtkGenericRenderWindowInteractor
 
         self._is_stale = True
+        self._due = QTimer(self)
+        self._due.setSingleShot(True)
+        self._due.setInterval(0)
+        self._due.timeout.connect(self.update)
         self._picture: QImage | None = None
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.WheelFocus)
@@ -75,9 +80,14 @@ class PaintedView(QWidget):
         return QSize(400, 400)
 
     def render(self, *_: Any) -> None:
-        """Draw soon; hides `QWidget.render`, as pyvistaqt's view does."""
+        """Draw when the event loop is back, once however often it was called; hides `QWidget.render`, as pyvistaqt's view does."""
         self._is_stale = True
-        self.update()
+        self._due.start()
+
+    def grab(self, rectangle: QRect | None = None) -> QPixmap:
+        """Return the picture with all that was changed so far."""
+        self._due.stop()
+        return super().grab() if rectangle is None else super().grab(rectangle)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         width, height = self._pixels()
@@ -86,7 +96,8 @@ class PaintedView(QWidget):
         self._is_stale = True
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        if self._is_stale or self._picture is None:
+        # A label above the picture that is painted anew does not draw the picture before its turn.
+        if self._picture is None or (self._is_stale and not self._due.isActive()):
             self._is_stale, self._picture = False, self._drawn()
         painter = QPainter(self)
         painter.drawImage(self.rect(), self._picture)
