@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from fake_engine import FLOOR, HEIGHT, LENGTH, WIDTH, box_mesh
@@ -13,7 +15,7 @@ from trunnion.model.blank import Revolved
 from trunnion.report import palette as palettes
 from trunnion.report.colour_choice import distinct_colours
 from trunnion_gui.look.colours import kind_colour, motions, rgb
-from trunnion_gui.worker.drawing import border_edges
+from trunnion_gui.worker.drawing import border_edges, hull_of
 
 LEFT = Qt.MouseButton.LeftButton
 IN_POCKET = {
@@ -265,6 +267,28 @@ def test_what_lies_above_the_picture_is_painted_without_drawing_it_early(recogni
     scene.view.repaint()
     assert not drawn
     qtbot.waitUntil(lambda: bool(drawn))
+
+
+def test_the_hull_is_as_wide_as_the_mesh_in_every_direction():
+    points = np.random.default_rng(5).normal(size=(2000, 3))
+    corners, directions = hull_of(points), np.random.default_rng(6).normal(size=(50, 3))
+    assert len(corners) < 0.2 * len(points)
+    assert np.allclose((corners @ directions.T).max(axis=0), (points @ directions.T).max(axis=0))
+
+
+@pytest.mark.parametrize("n", [0, 1, 3, 50])
+def test_points_in_a_plane_are_their_own_hull(n):
+    points = np.column_stack([np.random.default_rng(7).normal(size=(n, 2)), np.ones(n)])
+    assert np.array_equal(hull_of(points), points)
+
+
+def test_the_picture_is_fitted_without_a_look_at_every_point(recognized):
+    scene, drawing = recognized.viewport.scene, recognized.document.drawing
+    before = scene.view.camera.parallel_scale
+    assert len(drawing.hull) < len(drawing.mesh.points)
+    scene.show_mesh(replace(drawing, hull=2.0 * drawing.hull), keep_camera=True)
+    scene.fit()
+    assert scene.view.camera.parallel_scale > 1.5 * before
 
 
 def test_colours_of_features_are_worked_out_once_for_table_and_picture(

@@ -477,18 +477,21 @@ class ViewportScene(QWidget):
 
     def _size(self) -> float:
         """Return the part's longest side, mm."""
-        return float(np.ptp(self._mesh.points, axis=0).max()) if self._mesh is not None else 1.0
+        return float(np.ptp(self._hull, axis=0).max()) if len(self._hull) else 1.0
+
+    @property
+    def _hull(self) -> np.ndarray:
+        """The corners (k, 3) of the part's convex hull, mm; none without a part."""
+        return self._drawing.hull if self._drawing is not None else np.zeros((0, 3))
 
     def _everything(self) -> np.ndarray:
-        """Return the points (v, 3) of the part and of the blank that is shown."""
-        return (
-            np.vstack([self._mesh.points, self._blank]) if self._mesh is not None else self._blank
-        )
+        """Return points (k, 3), mm, that are as far apart in every direction as the part and the blank that is shown."""
+        return np.vstack([self._hull, self._blank])
 
     def _bounds(self) -> tuple[float, ...] | None:
-        if self._mesh is None:
-            return None
         points = self._everything()
+        if not len(points):
+            return None
         return tuple(float(v) for pair in zip(points.min(axis=0), points.max(axis=0)) for v in pair)
 
     def _apply_section(self) -> None:
@@ -504,7 +507,7 @@ class ViewportScene(QWidget):
         from vtkmodules.vtkCommonDataModel import vtkPlane
 
         assert self._mesh is not None
-        heights = self._frame.to_local(self._mesh.points)[:, 2]
+        heights = self._frame.to_local(self._hull)[:, 2]
         height = heights.min() + share * np.ptp(heights)
         plane = vtkPlane()
         plane.SetOrigin(*self._frame.to_world(np.array([0.0, 0.0, height])))

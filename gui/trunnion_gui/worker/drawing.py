@@ -14,12 +14,16 @@ from trunnion.report.palette import load_palette
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class DrawnMesh:
-    """A mesh with the normal at every point (v, 3) float32, its faces' borders as rows of points (e, 2), and whose border each is (e,)."""
+    """A mesh with the normal at every point (v, 3) float32, its faces' borders as rows of points (e, 2), and whose border each is (e,).
+
+    `hull` has the points (k, 3), mm, that a view of the part is fitted by: the corners of its convex hull.
+    """
 
     mesh: Mesh
     normals: np.ndarray
     borders: np.ndarray
     owners: np.ndarray
+    hull: np.ndarray
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -44,8 +48,22 @@ def drawing_of(mesh: Mesh) -> DrawnMesh:
     """Return a mesh ready to be drawn."""
     borders, owners = border_edges(mesh)
     return DrawnMesh(
-        mesh=mesh, normals=normals_of(mesh.points, mesh.triangles), borders=borders, owners=owners
+        mesh=mesh,
+        normals=normals_of(mesh.points, mesh.triangles),
+        borders=borders,
+        owners=owners,
+        hull=hull_of(mesh.points),
     )
+
+
+def hull_of(points: np.ndarray) -> np.ndarray:
+    """Return the corners (k, 3) of the convex hull of points (v, 3); all points where they lie in a plane."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        return points[ConvexHull(points).vertices]
+    except (QhullError, ValueError):  # ValueError: no points at all
+        return points
 
 
 def border_edges(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
