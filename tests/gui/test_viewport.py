@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,9 @@ from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Revolved
 from trunnion.report import palette as palettes
 from trunnion.report.colour_choice import distinct_colours
+from trunnion.report.lines import opened as opened_chords
 from trunnion_gui.look.colours import kind_colour, motions, rgb
+from trunnion_gui.viewport.layers import paths
 from trunnion_gui.worker.drawing import border_edges, hull_of
 
 LEFT = Qt.MouseButton.LeftButton
@@ -267,6 +270,45 @@ def test_what_lies_above_the_picture_is_painted_without_drawing_it_early(recogni
     scene.view.repaint()
     assert not drawn
     qtbot.waitUntil(lambda: bool(drawn))
+
+
+def test_toolpaths_are_opened_once(recognized, idle, monkeypatch):
+    lengthened = []
+    monkeypatch.setattr(
+        paths, "opened", lambda path: lengthened.append(path) or opened_chords(path)
+    )
+    recognized.document.run("toolpath", "Generate")
+    idle(recognized)
+    listed = recognized.document.session.paths
+    assert len(lengthened) == len(listed) > 1
+    recognized.viewport.show_motions(("cut",))
+    recognized.document.selection.select_operation(listed[0].operation)
+    recognized.viewport.show_motions(tuple(motions()))
+    recognized.document.selection.select_face(0)
+    idle(recognized)
+    assert len(lengthened) == len(listed)
+
+
+def test_many_toolpaths_are_drawn_in_pieces(recognized, idle, qtbot, monkeypatch):
+    recognized.document.run("toolpath", "Generate")
+    idle(recognized)
+    scene, session = recognized.viewport.scene, recognized.document.session
+    frame = session.process.setups[0].frame
+    copies = [(replace(p.path), frame) for p in session.paths for _ in range(30)]
+
+    def slow(path):
+        end = time.thread_time() + 0.005
+        while time.thread_time() < end:
+            pass
+        return opened_chords(path)
+
+    monkeypatch.setattr(paths, "opened", slow)
+    before = scene.view.actors["feed moves"]
+    scene.show_paths(copies)
+    assert scene.view.actors["feed moves"] is before
+    qtbot.waitUntil(lambda: scene.view.actors["feed moves"] is not before, timeout=10000)
+    n_lines = scene.view.actors["feed moves"].mapper.dataset.n_lines
+    assert n_lines == 30 * before.mapper.dataset.n_lines
 
 
 def test_the_hull_is_as_wide_as_the_mesh_in_every_direction():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,12 +20,13 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.report.lines import MOTIONS
 from trunnion_gui.look.colours import Theme, mixed, rgb
+from trunnion_gui.pieces import PieceExecution
 from trunnion_gui.viewport.layers.blank import draw_blank
 from trunnion_gui.viewport.layers.cut import draw_cut
 from trunnion_gui.viewport.layers.deviation import DeviationLayer
 from trunnion_gui.viewport.layers.label import draw_label, draw_names
 from trunnion_gui.viewport.layers.part import PartLayer
-from trunnion_gui.viewport.layers.paths import draw_paths
+from trunnion_gui.viewport.layers.paths import PathLayer
 from trunnion_gui.viewport.layers.setups import draw_setups
 from trunnion_gui.viewport.layers.stock import draw_stock
 from trunnion_gui.viewport.layers.tool import draw_tool, draw_trail, move_tool_to
@@ -134,6 +135,7 @@ class ViewportScene(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.view)
         self._theme = theme
+        self._paths, self._path_pieces = PathLayer(self.view), PieceExecution(self)
         self._part: PartLayer | None = None
         self._drawing: DrawnMesh | None = None
         self._mesh: Mesh | None = None
@@ -217,8 +219,13 @@ class ViewportScene(QWidget):
     def show_paths(
         self, paths: Iterable[tuple[Toolpath, Frame]], motions: Iterable[str] = MOTIONS
     ) -> None:
-        """Show toolpaths with the frames of their setups."""
-        draw_paths(self.view, paths, motions, self._size())
+        """Show toolpaths with the frames of their setups; many are drawn in pieces, after this has returned."""
+        self._path_pieces.begin(self._path_work(tuple(paths), tuple(motions)))
+
+    def _path_work(
+        self, paths: Sequence[tuple[Toolpath, Frame]], motions: Sequence[str]
+    ) -> Iterator[None]:
+        yield from self._paths.draw(paths, motions, self._size())
         self.view.render()
 
     def show_map(self, shown: DrawnMap | None) -> None:
@@ -362,6 +369,7 @@ class ViewportScene(QWidget):
 
     def end(self) -> None:
         """Let VTK go before Qt does."""
+        self._path_pieces.stop()
         self.view.removeEventFilter(self)
         self.view.close()
 
