@@ -34,6 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     i18n.use(preferences.language())
     gc_control = GcControl()
     window = Window()
+    gc_control.keep()
     window.show()
     if words:
         window.document.files.open(words[0])

@@ -16,11 +16,14 @@ class GcControl(QObject):
     def __init__(self) -> None:
         super().__init__()
         gc.disable()
-        # What was imported stays: to look through it again takes most of the time of a full collection.
-        gc.freeze()
+        self.keep()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.look)
         self._timer.start(OFTEN)
+
+    def keep(self) -> None:
+        """Look through what there is now in no later collection: modules, the window. It takes most of the time of a full one."""
+        gc.freeze()
 
     def look(self) -> None:
         """Collect the generations that have grown past the interpreter's own thresholds."""

@@ -27,3 +27,10 @@ def test_a_thread_that_makes_much_does_not_take_others_apart(tidy):
         kept = [[k] for k in range(2000)]
         tidy.look()
     assert seen == [threading.get_ident()] and len(kept) == 2000
+
+
+def test_what_is_kept_is_not_looked_through_again(tidy):
+    before = gc.get_freeze_count()
+    things = [[k] for k in range(20_000)]
+    tidy.keep()
+    assert gc.get_freeze_count() >= before + len(things)

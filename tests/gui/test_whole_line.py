@@ -55,11 +55,15 @@ def wait_for_job(window, seconds):
 @pytest.fixture(scope="module")
 def programmed(tmp_path_factory, qapp):
     """The window after a person has opened the sample part and pressed Program, and that person."""
+    from trunnion_gui.gc_control import GcControl
     from trunnion_gui.window import Window
 
     with pytest.MonkeyPatch.context() as patch, as_file(trunnion_resources.sample("B1")) as part:
         patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
+        # As the program does it, so that the time of collections is measured as the program has it.
+        gc_control = GcControl()
         window = Window()
+        gc_control.keep()
         window.unsaved.confirms = False
         window.resize(1440, 900)
         window.show()
@@ -70,6 +74,7 @@ def programmed(tmp_path_factory, qapp):
         person.clicks(window.toolbar.widgetForAction(window.registry.action("run.program")))
         wait_for_job(window, 280.0)
         person._beat.stop()
+        gc_control.stop()
         yield person
         window.close()
 
@@ -90,12 +95,12 @@ def frame_s(window) -> float:
 
 
 def test_the_window_never_works_long_at_a_stretch(programmed):
-    # Time of the window's own thread: what other processes take of a shared machine is not counted. The longest opens the part and
-    # draws its first frame; others draw a frame, which takes a machine without a graphics card some tens of milliseconds.
+    # Time of the window's own thread: what other processes take of a shared machine is not counted. The longest draws the first frame of
+    # the part; others draw a frame, which takes a machine without a graphics card some tens of milliseconds.
     # Machines are shared, and their speed varies by more than a half: where frames are slow, so many frames' time is the bound.
     frame = frame_s(programmed.window)
-    assert max(programmed.stretches) < max(0.4, 20.0 * frame)
-    assert sorted(programmed.stretches)[-5] < max(0.15, 8.0 * frame)
+    assert max(programmed.stretches) < max(0.2, 5.0 * frame)
+    assert sorted(programmed.stretches)[-5] < max(0.1, 3.0 * frame)
 
 
 def test_the_program_is_played_to_its_end(programmed, qtbot):
