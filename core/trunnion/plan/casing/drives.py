@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.plane.region import union_all
+from trunnion.geometry.plane.region import Region, union_all
 from trunnion.model.blank import Blank
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
@@ -29,6 +29,7 @@ from trunnion.plan.freeform.lands import STOCK, land_drive
 from trunnion.plan.freeform.surface_drives import space_from, surface_driven
 from trunnion.plan.holes.drive import hole_drive
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
+from trunnion.plan.turning.gap_drive import GapDrive
 from trunnion.progress import Progress
 
 ROUGH_CHORD, FINISH_CHORD = 0.05, 0.002
@@ -68,7 +69,7 @@ def plane_driven(
         drive = layers_over(operation, ground, boss_tops(ground), before)
     else:
         turned = [o for o in earlier(operation, scene) if o.kind == INTERRUPTED]
-        areas = [turned_of(o, ground, roughed_before(o, scene)) for o in turned]
+        areas = [turned_in(scene, o, progress) for o in turned]
         drive = floor_over(operation, ground, before, number(operation, STOCK), union_all(areas))
     rolling = rolling_on(ground, _chord(operation))
     setup = flat_setup(scene.setup, ground)
@@ -89,12 +90,31 @@ def gaps_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
 ) -> OperationDrive:
     """Return the passes of interrupted turning over a bottom."""
-    ground = ground_in(scene, operation.feature, progress)
-    clearance = flat_setup(scene.setup, ground).clearance
-    drive = gap_drive(operation, ground, roughed_before(operation, scene), clearance)
+    drive = gaps_in(scene, operation, progress)
     return OperationDrive(
         setup=scene.setup, drive=drive, identity=drive, cell=stock_cell(scene.blank)
     )
+
+
+def gaps_in(scene: Scene, operation: Operation, progress: Progress) -> GapDrive:
+    """Return the passes of an operation of interrupted turning, made once for all operations of a setup."""
+
+    def made() -> GapDrive:
+        ground = ground_in(scene, operation.feature, progress)
+        clearance = flat_setup(scene.setup, ground).clearance
+        return gap_drive(operation, ground, roughed_before(operation, scene), clearance)
+
+    return scene.once(("gaps", operation.id), made)
+
+
+def turned_in(scene: Scene, operation: Operation, progress: Progress) -> Region:
+    """Return the area of ground that an operation of interrupted turning finishes, made once for all operations of a setup."""
+
+    def made() -> Region:
+        ground = ground_in(scene, operation.feature, progress)
+        return turned_of(operation, ground, gaps_in(scene, operation, progress))
+
+    return scene.once(("turned", operation.id), made)
 
 
 def earlier_over(operation: Operation, scene: Scene) -> list[Operation]:

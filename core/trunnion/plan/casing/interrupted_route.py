@@ -126,11 +126,9 @@ def _motion_of(operation: Operation) -> GapMotion:
     return GapMotion(**{f.name: number(operation, MOTION + f.name) for f in fields(GapMotion)})
 
 
-def turned_of(operation: Operation, ground: DevelopedGround, roughed: list[Operation]) -> Region:
-    """Return the area of ground that an operation of interrupted turning finishes."""
-    motion = _motion_of(operation)
-    drive = gap_drive(operation, ground, roughed, 0.0)
-    return _finished(ground, drive.passes, operation.data, motion)
+def turned_of(operation: Operation, ground: DevelopedGround, drive: GapDrive) -> Region:
+    """Return the area of ground that an operation of interrupted turning finishes by its drive."""
+    return _finished(ground, drive.passes, operation.data, _motion_of(operation))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
