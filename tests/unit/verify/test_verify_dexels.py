@@ -452,6 +452,30 @@ def test_stock_that_grows_too_ragged_is_refused_with_a_remedy(monkeypatch):
         cut(leaning_section(flat(2.0)(), tips, [UP] * len(tips)), cell=0.5)
 
 
+def test_where_memory_has_no_room_gaps_shorter_than_a_cell_are_filled(monkeypatch):
+    # Grooves of 1.4 mm, 2 mm apart, along y: rays along x have fifteen gaps that are shorter than a cell.
+    tips = [
+        p
+        for x in np.arange(4.0, 34.0, 2.0)
+        for p in ((x, -20, 10), (x, 60, 10), (x + 1.0, 60, 30), (x + 2.0, -20, 30))
+    ]
+    section = leaning_section(flat(1.4)(), tips, [UP] * len(tips))
+    ample, tight = whole(2.0), whole(2.0)
+    cut(section, stock=ample)
+    monkeypatch.setattr("trunnion.verify.stock.rays.MOST_BYTES", Stock.need(BOX, 2.0, XYZ) + 1)
+    run = cut(section, stock=tight)[1]
+    along_x, exact = tight.rays["x"], ample.rays["x"]
+    assert along_x.capacity < exact.capacity and run.removed.sum() > 0.0
+    points = np.random.default_rng(2).uniform(BOX.low, BOX.high, (20000, 3))
+    there, kept = exact.contains(points), along_x.contains(points)
+    # Nothing that stands is lost, and what was filled lies in a groove.
+    assert (kept | ~there).all()
+    more = points[kept & ~there]
+    assert len(more)
+    off = (more[:, 0] - 4.0) % 2.0
+    assert np.minimum(off, 2.0 - off).max() <= 0.7 + 1e-6
+
+
 def test_cancel_is_heard_within_a_fifth_of_a_second():
     rng = np.random.default_rng(1)
     section = leaning_section(

@@ -110,6 +110,29 @@ class Bundle:
             np.pad(a, ((0, 0), (0, self.capacity))) for a in (self.low, self.high)
         )
 
+    def fill_gaps(self, longest: float) -> bool:
+        """Fill gaps of at most a length (mm) between the intervals of rays that have no room left; return whether all have some then.
+
+        Rays are a cell apart: gaps shorter than that along one are no more than the stock can tell across them. What is filled counts as
+        material: nothing that stands is lost.
+        """
+        full = np.flatnonzero(self.count > self.capacity - 2)
+        low, high, count = self.low[full], self.high[full], self.count[full]
+        numbers = np.arange(self.capacity)
+        there = numbers < count[:, None]
+        begins = there.copy()
+        begins[:, 1:] &= low[:, 1:] - high[:, :-1] > longest
+        ends = there & np.column_stack([begins[:, 1:], np.zeros(len(full), bool)])
+        ends[np.arange(len(full)), np.maximum(count - 1, 0)] = count > 0
+        kept = begins.sum(axis=1)
+        filled = numbers < kept[:, None]
+        # Intervals of a ray stand in order: the k-th that begins ends with the k-th that ends.
+        self.low[full], self.high[full] = 0.0, 0.0
+        own = np.repeat(full, kept), np.nonzero(filled)[1]
+        self.low[own], self.high[own] = low[begins], high[ends]
+        self.count[full] = kept
+        return bool((kept <= self.capacity - 2).all())
+
     def contains(self, points: Floats) -> Bools:
         """Return for points (k, 3) in the blank's frame whether the nearest ray has material there."""
         u, v, w = points[:, cycle(self.axis)].T

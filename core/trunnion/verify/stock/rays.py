@@ -159,7 +159,7 @@ def run_rays(
 
 
 def _run(jobs: list[_Job], bundles: Sequence[Bundle], progress: Progress, threads: int) -> None:
-    """Run jobs until all are done, giving rays more room where they need it."""
+    """Run jobs until all are done, giving rays more room where they need it, and where memory has none filling gaps shorter than a cell."""
     waiting = jobs
     while waiting:
 
@@ -171,6 +171,8 @@ def _run(jobs: list[_Job], bundles: Sequence[Bundle], progress: Progress, thread
         waiting = [job for job in waiting if not job.done]
         for bundle in {job.bundle.axis: job.bundle for job in waiting}.values():
             if sum(b.nbytes for b in bundles) + bundle.nbytes > MOST_BYTES:
+                if bundle.fill_gaps(bundle.pitch):
+                    continue
                 raise OutOfMemory(
                     f"stock at cells of {bundle.pitch:g} mm has become so ragged that it would need more than "
                     f"{MOST_BYTES / 1e6:.0f} MB: choose a coarser verify.cell"
