@@ -1,6 +1,7 @@
 """How many of the random parts are released, at once and after repairs, and how much of their feed time is air.
 
-    python tests/release_rate.py panel leaning plate casing impeller --seeds 0-19 [--jobs 2] [--set KEY=VALUE] [--json FILE] [--keep FOLDER]
+    python tests/release_rate.py panel leaning plate casing recessed impeller --seeds 0-19 [--jobs 2] [--set KEY=VALUE]
+                                 [--json FILE] [--keep FOLDER]
 
 Every part goes through the command line as a shop's part would. One line a part: verdict, coverage of what can be reached, share of air in
 the feed time, minutes at the machine, seconds it took, and the first line that says why it was rejected.
@@ -31,6 +32,7 @@ RELEASED = ("passed", "passed with remarks")
 WORDS = {
     "impeller": ("post.dialect=sinumerik",),
     "casing": (),
+    "recessed": (),
 }
 """Settings that a kind of parts needs; those of the caller come after them."""
 
@@ -112,12 +114,14 @@ def outcomes(
     from seeded.leaning_panels import leaning_panel
     from seeded.panels import panel
     from seeded.plates import plate
+    from seeded.recesses import recessed_casing
 
     makers = {
         "panel": panel,
         "leaning": leaning_panel,
         "plate": plate,
         "casing": casing,
+        "recessed": recessed_casing,
         "impeller": partial(impeller, rounded=True),
     }
     parts = [(makers[kind](seed), WORDS.get(kind, ())) for kind in kinds for seed in seeds]
@@ -148,7 +152,9 @@ def main() -> None:
     """Measure, print, and write."""
     asked = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     asked.add_argument(
-        "kinds", nargs="+", choices=("panel", "leaning", "plate", "casing", "impeller")
+        "kinds",
+        nargs="+",
+        choices=("panel", "leaning", "plate", "casing", "recessed", "impeller"),
     )
     asked.add_argument("--seeds", default="0-19")
     asked.add_argument("--jobs", type=int, default=os.cpu_count() or 1)

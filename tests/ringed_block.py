@@ -10,14 +10,16 @@ from trunnion.geometry.development import Development
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Revolved
-from trunnion.plan.development.ground import DevelopedGround, ground_of
+from trunnion.plan.development.ground import DevelopedGround, GroundBounds, ground_of
 from trunnion.progress import NO_PROGRESS
 
 RADIUS, LENGTH, WIDE, HIGH = 100.0, 60.0, 20.0, 8.0
 BOSS = 7
 
 
-def ground(ends: tuple[float, float] = (0.0, LENGTH)) -> DevelopedGround:
+def ground(
+    ends: tuple[float, float] = (0.0, LENGTH), limited: GroundBounds | None = None
+) -> DevelopedGround:
     """Return a cylinder with a flange over its lower end and a square block that stands on it at x, under a turned ring."""
     turn = np.linspace(0.0, 2.0 * np.pi, 361)
     rows = [(RADIUS, 0.0), (RADIUS + 12.0, 0.0)]
@@ -58,4 +60,4 @@ def ground(ends: tuple[float, float] = (0.0, LENGTH)) -> DevelopedGround:
         density=2.8,
     )
     development = Development(frame=WORLD, radius=RADIUS, height=0.0, slope=0.0, middle=0.0)
-    return ground_of(development, ends, mesh, [((BOSS,), True)], (1,), blank, NO_PROGRESS)
+    return ground_of(development, ends, mesh, [((BOSS,), True)], (1,), blank, NO_PROGRESS, limited)

@@ -7,6 +7,7 @@ import pytest
 import samples
 from releases import assert_released
 from seeded.casings import bolted_ring, ribbed_ring, short_ring, small_casing
+from seeded.recesses import recessed_ring
 from trunnion.pipeline import Engine
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
@@ -23,6 +24,17 @@ def test_a_casing_is_released(part, coverage):
     session = engine.open(samples.written(part(), name="casing"))
     session = engine.run(engine.with_choices(session, CHOICES))
     assert_released(session, coverage=coverage)
+
+
+@pytest.mark.parametrize(
+    "form", [{}, {"slope": 0.2}, {"radial": True}, {"fillet": 1.0}, {"on_it": False}]
+)
+def test_a_casing_with_a_recess_is_released(form):
+    engine = Engine()
+    session = engine.open(samples.written(recessed_ring(**form), name="casing"))
+    session = engine.run(engine.with_choices(session, CHOICES))
+    # Over a ground of 38 mm parallel walls lean in by up to 20 degrees: no cutter goes into the corners at their feet.
+    assert_released(session, coverage=0.98)
 
 
 @pytest.mark.parametrize("part", [short_ring, bolted_ring])

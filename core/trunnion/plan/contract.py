@@ -141,7 +141,8 @@ class RollingGround:
     """Ground that a path is rolled onto: its development, the chord error (mm) of feeds, and the corners (2,) of the plane's box that the
     stock over it is known in. `profile` (k, 2): places along the straight lines and how high the blank is there. `widths`: the share of its
     width that a straight cutter still has over the plane at the top of what is cut there. `known`: the places along the straight lines
-    between which all is known that stands there."""
+    between which all is known that stands there. `upper`: the ground that what stands higher is cut with, where this one is sunk into it.
+    """
 
     development: Development
     chord: float
@@ -150,6 +151,7 @@ class RollingGround:
     profile: Floats
     widths: float
     known: tuple[float, float] = (-math.inf, math.inf)
+    upper: RollingGround | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

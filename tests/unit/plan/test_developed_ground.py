@@ -10,7 +10,7 @@ import pytest
 
 from flat_parts import operation
 from milling import mill
-from ringed_block import HIGH, RADIUS, WIDE, ground
+from ringed_block import BOSS, HIGH, RADIUS, WIDE, ground
 from trunnion.geometry.development import Development
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.plane.region import Region
@@ -23,7 +23,7 @@ from trunnion.plan.development.drives import (
     shank_clearance,
     tangent_reach,
 )
-from trunnion.plan.development.ground import sector
+from trunnion.plan.development.ground import GroundBounds, sector
 from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 
@@ -61,6 +61,23 @@ def test_the_ring_of_the_blank_is_what_is_milled() -> None:
     (x0, y0), (x1, y1) = ring_of(ground()).box()
     assert (y0, y1) == pytest.approx((17.0, 43.0), abs=0.8)
     assert x1 - x0 == pytest.approx(2.0 * math.pi * RADIUS, abs=0.1)
+
+
+def test_limited_ground_is_milled_within_its_limit_and_below_its_ceiling_alone() -> None:
+    """The block's own plan area is the limit here; above 3 mm at one end and 9 mm at the other the ring goes with other ground."""
+    limit = GroundBounds(tags=(BOSS,), ceiling=((0.0, 3.0), (60.0, 9.0)))
+    whole, limited = ground(), ground(limited=limit)
+    block = Region.rectangle(-0.5 * WIDE, 20.0, 0.5 * WIDE, 40.0).offset(0.2)
+    assert limited.milled() and not limited.milled().minus(block)
+    assert not limited.blank_over(1.0).minus(block)
+    assert not limited.free(HIGH + 1.0, mill(4.0), 0.0, 0.0).minus(block)
+    assert not ring_of(limited).minus(block)
+    # The ring ends at 42 mm, where the ceiling is as high as this, give or take a step between places.
+    assert limited.top == pytest.approx(3.0 + 0.1 * 42.0, abs=0.1)
+    assert limited.top_with(0.5) == pytest.approx(limited.top + 0.5)
+    assert (limited.ring_top, limited.widths) == (whole.ring_top, whole.widths)
+    assert whole.top_with(0.5) == whole.top
+    assert limited.over(4.0).contains([[0.0, 30.0]])[0]
 
 
 def test_shank_and_holder_keep_from_what_is_high_beside_the_cutter() -> None:

@@ -201,6 +201,30 @@ def test_what_is_cut_over_a_ground_is_known_along_other_directions() -> None:
     assert seen.heights[beside] == pytest.approx(105.0, abs=0.1)
 
 
+def test_what_is_cut_over_the_ground_that_another_is_sunk_into_is_gone_over_both() -> None:
+    outline = np.array([[90.0, 0.0], [105.0, 0.0], [105.0, 40.0], [90.0, 40.0]])
+    views = StockViews(Revolved(frame=WORLD, outline=outline, material="EN AW-7075", density=2.8))
+    upper, lower = (
+        RollingGround(
+            development=replace(GROUND, radius=radius, middle=middle),
+            chord=0.01,
+            low=np.array([-wide, 0.0]),
+            high=np.array([wide, 40.0]),
+            profile=np.array([[0.0, 105.0 - radius], [40.0, 105.0 - radius]]),
+            widths=1.0,
+        )
+        for radius, middle, wide in ((100.0, 0.0, 60.0), (97.0, 0.1, 30.0))
+    )
+    lower = replace(lower, upper=upper)
+    assert views.over_ground(lower).heights == pytest.approx(8.0)
+    rows = [(-20.0, 20.0, 20.0, Motion.RAPID), (-20.0, 20.0, 1.0, Motion.LINE)]
+    views.cut_over(upper, flat_path([*rows, (30.0, 20.0, 1.0, Motion.LINE)]), mill(12.0))
+    stock = views.over_ground(lower)
+    # 1 mm stay on the upper ground, which is 3 mm over the lower one; beside the groove all is as it was.
+    assert 4.0 <= stock.height((0.0, 20.0), (0.0, 20.0), 1.0) < 4.0 + 2.0 * stock.cell
+    assert stock.height((0.0, 35.0), (0.0, 35.0), 1.0) == pytest.approx(8.0)
+
+
 def test_stock_that_straight_cutters_leave_high_up_is_known() -> None:
     """On a radius of 100 mm a cutter of 12 mm spans 2 asin(6 / 125) at 25 mm: 9.6 mm of the ground, and two passes 11 mm apart leave a fin
     between them that is in no cutter's way at the ground."""

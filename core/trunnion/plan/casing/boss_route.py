@@ -18,6 +18,7 @@ from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.development.ground import SKIM, DevelopedGround
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
+from trunnion.plan.freeform.frames import Direction
 from trunnion.plan.freeform.keys import ALLOWANCE, OVERHANG, SCALLOP
 from trunnion.plan.freeform.lands import (
     ABOVE_TOOL,
@@ -74,12 +75,12 @@ def plan_boss(state: CasingPlanState, stage: Stage, boss: Feature) -> None:
         _plan_fillet(state, stage, boss)
 
 
-def out_of(state: CasingPlanState, boss: Feature) -> tuple[float, float, float]:
+def out_of(state: CasingPlanState, boss: Feature) -> Direction:
     """Return the direction of a boss's top in the setup's frame."""
     return state.direction(state.part.graph().normal[boss.with_role(TOP)[0] - 1])
 
 
-def space_along(state: CasingPlanState, direction: tuple[float, float, float]) -> SurfaceSpace:
+def space_along(state: CasingPlanState, direction: Direction) -> SurfaceSpace:
     """Return the part as a tool from a direction in the setup's frame sees it."""
     skin = state.context.skin(tolerance.CHORD, state.progress)
     return SurfaceSpace.of(state.part, skin, state.blank, state.setup, direction)
@@ -93,7 +94,7 @@ def _plan_top(state: CasingPlanState, stage: Stage, boss: Feature, ground: Devel
     lands = lands_of(space, tags)
     tool, clearances = _top_cutter(state, part_above, lands)
     if tool is None or not lands:
-        state.findings.append(_no_cutter(boss, tags, "covers its top beside what stands around it"))
+        state.findings.append(no_cutter(boss, tags, "covers its top beside what stands around it"))
         return
     stock = _over_top(state, boss, ground) + state.route.floor_allowance + MARGIN
     depth = stock / math.ceil(stock / DEEPEST)
@@ -182,11 +183,11 @@ def _plan_sides(
     fillet = _size(boss, "root_fillet")
     tool = _side_cutter(state, boss, ground, fillet)
     if tool is None:
-        state.findings.append(_no_cutter(boss, tags, "goes round its outline"))
+        state.findings.append(no_cutter(boss, tags, "goes round its outline"))
         return
     hollow = _size(boss, "concave_radius") or math.inf
     if tool.radius > hollow:
-        state.findings.append(_remaining_in_hollows(boss, tags, tool, hollow))
+        state.findings.append(remaining_in_hollows(boss, tags, tool, hollow))
     height = state.settings.scallop
     choices: dict[str, Value] = {
         SCALLOP: height,
@@ -272,22 +273,36 @@ def _plan_fillet(state: CasingPlanState, stage: Stage, boss: Feature) -> None:
     tags = boss.with_role(ROOT_FILLET)
     if not tags:
         return
-    radius = _size(boss, "root_fillet")
-    high = max(_size(boss, "height"), 1.0) + state.route.reach_clearance
+    radius, high = _size(boss, "root_fillet"), max(_size(boss, "height"), 1.0)
+    add_fillet(state, stage, boss, boss.id, tags, radius, high, out_of(state, boss))
+
+
+def add_fillet(
+    state: CasingPlanState,
+    stage: Stage,
+    feature: Feature,
+    name: str,
+    tags: tuple[int, ...],
+    radius: float,
+    high: float,
+    direction: Direction,
+) -> None:
+    """Add the finishing of fillets of a radius (mm) at the feet of sides that are so high (mm), by a ball no larger than they are."""
+    deep = high + state.route.reach_clearance
     balls = [
         t
         for t in state.cutters("surface")
-        if t.form == "ball" and t.radius <= radius + tolerance.SLIVER and depth_reached(t) >= high
+        if t.form == "ball" and t.radius <= radius + tolerance.SLIVER and depth_reached(t) >= deep
     ]
     tool = max(balls, key=lambda t: (t.diameter, -depth_reached(t), t.name), default=None)
     if tool is None:
-        state.findings.append(_no_cutter(boss, tags, f"fits a fillet of {trimmed(radius, 2)} mm"))
+        state.findings.append(no_cutter(feature, tags, f"fits a fillet of {trimmed(radius, 2)} mm"))
         return
     height = state.settings.scallop
     state.add(
         stage,
-        boss.id,
-        boss.id,
+        name,
+        feature.id,
         tool,
         depth=state.route.wall_allowance + state.route.floor_allowance,
         width=stepover_on_plane(tool.radius, height),
@@ -300,7 +315,7 @@ def _plan_fillet(state: CasingPlanState, stage: Stage, boss: Feature) -> None:
             **chord_choices(stage.strategy, height),
         },
         why=f"{tool.name}: no rounder than the fillet of {trimmed(radius, 2)} mm.",
-        direction=out_of(state, boss),
+        direction=direction,
     )
 
 
@@ -309,14 +324,15 @@ def _size(boss: Feature, name: str) -> float:
     return float(value) if isinstance(value, (int, float)) else 0.0
 
 
-def _remaining_in_hollows(
-    boss: Feature, tags: tuple[int, ...], tool: Tool, hollow: float
+def remaining_in_hollows(
+    feature: Feature, tags: tuple[int, ...], tool: Tool, hollow: float
 ) -> Finding:
+    """Return the finding that a cutter leaves something in hollows of an outline, of a radius in mm."""
     return warning(
         "route.no-cutter",
-        f"{boss.id}: no cutter of the catalogue goes into hollows of R {trimmed(hollow, 2)} of its outline; {tool.name} leaves what "
+        f"{feature.id}: no cutter of the catalogue goes into hollows of R {trimmed(hollow, 2)} of its outline; {tool.name} leaves what "
         "is there",
-        boss.id,
+        feature.id,
         *face_tags(tags),
         remedy="add a smaller or longer cutter to the tools folder",
     )
@@ -332,11 +348,12 @@ def _not_planned(boss: Feature) -> Finding:
     )
 
 
-def _no_cutter(boss: Feature, tags: tuple[int, ...], what: str) -> Finding:
+def no_cutter(feature: Feature, tags: tuple[int, ...], what: str) -> Finding:
+    """Return the finding that no cutter does what faces of a feature ask for."""
     return error(
         "route.no-cutter",
-        f"{boss.id}: no cutter of the catalogue {what}",
-        boss.id,
+        f"{feature.id}: no cutter of the catalogue {what}",
+        feature.id,
         *face_tags(tags),
         remedy="add a smaller or longer cutter to the tools folder",
     )

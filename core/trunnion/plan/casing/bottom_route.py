@@ -69,19 +69,24 @@ def plan_grounds(state: CasingPlanState) -> None:
             continue
         if ring_of(ground):
             state.grounds[pocket.id] = ground.watched(state.progress)
+            if bottom.is_recess:
+                state.hosts[pocket.id] = bottom.recess_of
 
 
 def plan_layers(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
-    """Add the first roughing of a bottom, or all the smaller cutters after it."""
+    """Add the first roughing of a bottom, or all the smaller cutters after it. A recess is roughed with the smaller ones: only then is all
+    clear that stands over it."""
     ground = state.grounds[pocket.id]
     ring = ring_of(ground).minus(ground.over(state.route.floor_allowance))
-    if stage.cutter == LAYERS:
-        wanted = state.settings.rough_cutter
+    recess = pocket.id in state.hosts
+    if recess != (stage.cutter == LAYERS):
+        wanted = "" if recess else state.settings.rough_cutter
         tool = named(state.shop, wanted) if wanted else _rougher(state, pocket, ground, ring)
         if tool is None:
             state.findings.append(_no_cutter(pocket, stage, ground))
             return
         _add_layers(state, stage, pocket, ground, tool, "")
+    if stage.cutter == LAYERS:
         return
     before = [o.cutter for o in state.operations if o.feature == pocket.id and o.kind == ROUGH]
     if not before:
@@ -172,16 +177,29 @@ def _add_layers(
 
 def _rough_candidates(state: CasingPlanState, ground: DevelopedGround) -> list[Tool]:
     """Return end mills that rough down to the bottom, the largest and shortest first."""
-    deep = ground.top + state.route.reach_clearance
-    fits = [
-        t
-        for t in state.cutters("rough")
-        if t.form in ("flat", "bull")
-        and t.diameter <= state.route.largest
-        and depth_reached(t) >= deep
-    ]
+    fits = _deep_enough(
+        state,
+        ground,
+        [
+            t
+            for t in state.cutters("rough")
+            if t.form in ("flat", "bull") and t.diameter <= state.route.largest
+        ],
+    )
     fits.sort(key=lambda t: (-t.diameter, depth_reached(t), abs(t.corner_radius - CORNER), t.name))
     return _one_a_size(fits)
+
+
+def _deep_enough(
+    state: CasingPlanState, ground: DevelopedGround, tools: Sequence[Tool]
+) -> list[Tool]:
+    """Return the tools that reach down to ground from the top of the blank, or, of a size that none does, only from the ceiling over it:
+    what stands higher is cut before, and is beside the recess if anywhere."""
+    found = list[Tool]()
+    for height in sorted({max(ground.ring_top, ground.top), ground.top}, reverse=True):
+        deep, sizes = height + state.route.reach_clearance, {t.diameter for t in found}
+        found += [t for t in tools if t.diameter not in sizes and depth_reached(t) >= deep]
+    return found
 
 
 def _one_a_size(tools: Sequence[Tool]) -> list[Tool]:
@@ -217,19 +235,18 @@ def cutter_clearance(
     state: CasingPlanState, ground: DevelopedGround, tool: Tool, pocket: Feature, own: float
 ) -> float:
     """Return what (mm) shank and holder of a cutter with an allowance of its `own` keep from the part."""
-    before = [o.cutter for o in state.operations if o.feature == pocket.id and o.kind == ROUGH]
+    over = {pocket.id, *state.hosts_of(pocket.id)}
+    before = [o.cutter for o in state.operations if o.feature in over and o.kind == ROUGH]
     return max(own + BESIDE, shank_clearance(ground, tool, before, state.route.wall_allowance))
 
 
 def _finisher(
     state: CasingPlanState, pocket: Feature, ground: DevelopedGround, ring: Region
 ) -> Tool | None:
-    deep = ground.top + state.route.reach_clearance
-    fits = [
-        t
-        for t in state.cutters("finish")
-        if t.form == "flat" and t.diameter <= state.route.largest and depth_reached(t) >= deep
+    flat = [
+        t for t in state.cutters("finish") if t.form == "flat" and t.diameter <= state.route.largest
     ]
+    fits = _deep_enough(state, ground, flat)
     tools = _one_a_size(sorted(fits, key=lambda t: (-t.diameter, depth_reached(t), t.name)))
     for tool in tools:
         around = cutter_clearance(state, ground, tool, pocket, 0.0)
@@ -244,8 +261,7 @@ def _finisher(
 
 def _foot_cutter(state: CasingPlanState, ground: DevelopedGround, reach: float) -> Tool | None:
     """Return the largest end mill whose disc finishes bent ground nearly to its rim."""
-    deep = ground.top + state.route.reach_clearance
-    fits = [t for t in state.cutters("finish") if t.form == "flat" and depth_reached(t) >= deep]
+    fits = _deep_enough(state, ground, [t for t in state.cutters("finish") if t.form == "flat"])
     small = [t for t in fits if t.radius <= FEET * reach]
     pool = small or sorted(fits, key=lambda t: t.diameter)[:1]
     return max(pool, key=lambda t: (t.diameter, -depth_reached(t), t.name), default=None)
@@ -271,5 +287,6 @@ def _no_cutter(pocket: Feature, stage: Stage, ground: DevelopedGround) -> Findin
 
 
 def grounds_in_order(state: CasingPlanState) -> Sequence[Feature]:
-    """Return the pockets whose bottoms are laid flat."""
-    return [p for p in state.recognition.of_kind(POCKET) if p.id in state.grounds]
+    """Return the pockets whose bottoms are laid flat, recesses after what they are sunk into."""
+    found = [p for p in state.recognition.of_kind(POCKET) if p.id in state.grounds]
+    return sorted(found, key=lambda p: len(state.hosts_of(p.id)))

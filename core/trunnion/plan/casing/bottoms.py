@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from trunnion.findings import BadInput
-from trunnion.geometry.facegraph import CONVEX, FaceGraph
+from trunnion.geometry.facegraph import CONVEX, SMOOTH, FaceGraph
 from trunnion.model.feature import Feature, Recognition
 from trunnion.recognize.casing.boss_sizes import with_fillets
 from trunnion.recognize.casing.bosses import BossFaces
@@ -38,13 +38,22 @@ class CasingBoss:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CasingBottom:
-    """A pocket's bottom: its meridian, the bosses that stand on it or in a recess of it, and whether it runs round the casing."""
+    """A pocket's bottom: its meridian, the bosses that stand on it or in a recess of it, and whether it runs round the casing.
+
+    A recess says which pocket's bottom it is sunk into, or else, in `sunk_into`, by their tags the turned faces of a profile.
+    """
 
     pocket: Feature
     meridian: Meridian
     bosses: tuple[CasingBoss, ...]
     full_circle: bool
     recess_of: str = ""
+    sunk_into: tuple[int, ...] = ()
+
+    @property
+    def is_recess(self) -> bool:
+        """Whether it is the bottom of a recess."""
+        return bool(self.recess_of or self.sunk_into)
 
 
 def casing_faces(found: Recognition, graph: FaceGraph) -> CasingFaces:
@@ -64,7 +73,8 @@ def casing_bottoms(found: Recognition, graph: FaceGraph) -> tuple[CasingBottom, 
         raise BadInput(
             "no pocket with a turned bottom was recognised: there are no regions to choose between turning and milling"
         )
-    hosts = {p.id: _host(faces, p, pockets) for p in pockets}
+    around = {p.id: _around(faces, p) for p in pockets}
+    hosts = {p.id: _host(around[p.id], p, pockets) for p in pockets}
     meridians = {p.id: Meridian.of(faces, [t - 1 for t in p.with_role(BOTTOM)]) for p in pockets}
     on_bottom = {p.id: _bosses_on(found, faces, p, meridians[p.id]) for p in pockets}
     return tuple(
@@ -79,20 +89,45 @@ def casing_bottoms(found: Recognition, graph: FaceGraph) -> tuple[CasingBottom, 
             ),
             full_circle=any(faces.runs_round(t - 1) for t in p.with_role(BOTTOM)),
             recess_of=hosts[p.id],
+            sunk_into=() if hosts[p.id] else _profile(faces, p, around[p.id]),
         )
         for p in pockets
     )
 
 
-def _host(faces: CasingFaces, pocket: Feature, pockets: Sequence[Feature]) -> str:
-    """Return the pocket whose bottom a recess is sunk into, over the convex edges of its walls; empty where it is none."""
+def _around(faces: CasingFaces, pocket: Feature) -> frozenset[int]:
+    """Return the rows of what a recess is sunk into: over the convex edges of its walls, or over what rounds or breaks these; nothing for a
+    bottom that runs round."""
     if any(faces.runs_round(t - 1) for t in pocket.with_role(BOTTOM)):
-        return ""
-    beyond = {n for t in pocket.with_role(SIDE) for n in faces.graph.neighbours(t - 1, CONVEX)}
+        return frozenset()
+    graph, own = faces.graph, {t - 1 for t in pocket.tags}
+    rims = {n for t in pocket.with_role(SIDE) for n in graph.neighbours(t - 1, CONVEX)} - own
+    broken = {r for r in _rounded(faces, pocket, own) | rims if not faces.turned[r]}
+    beyond = {n for r in broken for sense in (CONVEX, SMOOTH) for n in graph.neighbours(r, sense)}
+    return frozenset(rims | {n for n in beyond if faces.turned[n]} - own)
+
+
+def _rounded(faces: CasingFaces, pocket: Feature, own: set[int]) -> set[int]:
+    """Return the rows of roundings that walls of a recess run into smoothly at their upper edges."""
+    graph = faces.graph
+    beside = {n for t in pocket.with_role(SIDE) for n in graph.neighbours(t - 1, SMOOTH)} - own
+    return {n for n in beside if graph.bend[n] > 0}
+
+
+def _host(around: frozenset[int], pocket: Feature, pockets: Sequence[Feature]) -> str:
+    """Return the pocket whose bottom a recess is sunk into; empty where it is none."""
     for other in pockets:
-        if other is not pocket and beyond & {t - 1 for t in other.with_role(BOTTOM)}:
+        if other is not pocket and around & {t - 1 for t in other.with_role(BOTTOM)}:
             return other.id
     return ""
+
+
+def _profile(faces: CasingFaces, pocket: Feature, around: frozenset[int]) -> tuple[int, ...]:
+    """Return by their tags the turned faces that a recess of no pocket is sunk into: none where it is open to what runs round beside it, or
+    where nothing but faces square to the axis is around it."""
+    if any(faces.runs_round(t - 1) for t in pocket.with_role(SIDE)):
+        return ()
+    return tuple(sorted(r + 1 for r in around if faces.turned[r] and not faces.across[r]))
 
 
 def _bosses_on(

@@ -71,11 +71,23 @@ def plane_driven(
         turned = [o for o in earlier(operation, scene) if o.kind == INTERRUPTED]
         areas = [turned_in(scene, o, progress) for o in turned]
         drive = floor_over(operation, ground, before, number(operation, STOCK), union_all(areas))
-    rolling = rolling_on(ground, _chord(operation))
+    rolling = rolling_over(operation.feature, _chord(operation), scene, progress)
     setup = flat_setup(scene.setup, ground)
     return OperationDrive(
         setup=setup, drive=drive, identity=(drive, ground.development), rolling=rolling
     )
+
+
+def rolling_over(pocket: str, chord: float, scene: Scene, progress: Progress) -> RollingGround:
+    """Return what a path over the ground of a pocket is rolled onto, with that of the pocket it is sunk into."""
+    host = scene.once(
+        ("host", pocket),
+        lambda: bottom_of(scene.recognition, scene.context.part, pocket).recess_of,
+    )
+    rolling = rolling_on(ground_in(scene, pocket, progress), chord)
+    if not host:
+        return rolling
+    return replace(rolling, upper=rolling_over(host, chord, scene, progress))
 
 
 def _chord(operation: Operation) -> float:

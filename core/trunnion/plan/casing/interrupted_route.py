@@ -43,7 +43,9 @@ AS_GOOD = 0.95
 
 
 def plan_gaps(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
-    """Add the interrupted turning of a bottom where the machine can, and enough of it lies in gaps that are long enough."""
+    """Add the interrupted turning of a bottom that runs round where the machine can, and enough of it lies in gaps that are long enough."""
+    if pocket.id in state.hosts:
+        return
     machine, ground = state.machine, state.grounds[pocket.id]
     roughed = [o for o in state.operations if o.feature == pocket.id and o.kind == ROUGH]
     if not state.settings.interrupted or not turns_and_mills(machine) or not roughed:

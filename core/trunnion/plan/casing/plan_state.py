@@ -30,10 +30,12 @@ from trunnion.shop import Shop, Stage
 
 @dataclass(slots=True, kw_only=True)
 class CasingPlanState:
-    """What is known while a casing is planned in a setup; `grounds` are the bottoms laid flat, by their pockets, `gaps` what of them
-    is turned with interruptions. `next` is the setup of the
-    part turned over, where the machine takes it so: for what the first one does not reach. `turned` is the turning before them, where the
-    blank did not come turned."""
+    """What is known while a casing is planned in a setup.
+
+    `grounds` are the bottoms laid flat, by their pockets, `hosts` of those that are recesses the pocket that each is sunk into, empty where
+    that is a profile, `gaps` what of them is turned with interruptions. `next` is the setup of the part turned over, where the machine
+    takes it so: for what the first one does not reach. `turned` is the turning before them, where the blank did not come turned.
+    """
 
     part: Part
     mesh: Mesh
@@ -53,12 +55,21 @@ class CasingPlanState:
     turned: TurnedRoute | None = None
     grounds: dict[str, DevelopedGround] = field(default_factory=dict)
     gaps: dict[str, Region] = field(default_factory=dict)
+    hosts: dict[str, str] = field(default_factory=dict)
     operations: list[Operation] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 
     def turned_over(self) -> CasingPlanState | None:
         """Return what is known in the next setup, its operations and findings the same lists; None where there is none."""
         return replace(self, setup=self.next, next=None) if self.next is not None else None
+
+    def hosts_of(self, pocket: str) -> list[str]:
+        """Return the pockets that a recess is sunk into, the nearest first; none for a bottom that runs round."""
+        found = list[str]()
+        while self.hosts.get(pocket):
+            pocket = self.hosts[pocket]
+            found.append(pocket)
+        return found
 
     def cutters(self, use: str) -> list[Tool]:
         """Return the catalogue's cutters for a use and the blank's material."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -24,6 +24,12 @@ from trunnion.plan.casing.bottom_route import (
 from trunnion.plan.casing.hole_route import RULES, casing_holes, plan_holes
 from trunnion.plan.casing.interrupted_route import GAPS, plan_gaps
 from trunnion.plan.casing.plan_state import CasingPlanState
+from trunnion.plan.casing.recess_route import (
+    RECESS_FILLET,
+    RECESS_SIDE,
+    plan_recess,
+    remaining_recesses,
+)
 from trunnion.plan.flip import turned
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.process import process_of
@@ -40,6 +46,8 @@ CUTTER_RULES = (
     SIDE_CUTTER,
     FILLET,
     GAPS,
+    RECESS_SIDE,
+    RECESS_FILLET,
     *RULES,
     *TURNING_RULES,
 )
@@ -64,16 +72,25 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
         elif stage.cutter == GAPS:
             for pocket in grounds_in_order(state):
                 plan_gaps(state, stage, pocket)
+        elif stage.cutter in (RECESS_SIDE, RECESS_FILLET):
+            for pocket in grounds_in_order(state):
+                plan_recess(state, stage, pocket)
         elif stage.cutter in RULES:
             plan_holes(state, stage, holes)
         else:
             for boss in state.recognition.of_kind(BOSS):
                 plan_boss(state, stage, boss)
+    state.findings.extend(remaining_recesses(state))
     _add_turned(state)
     setups = _setups(state)
     turned = state.turned.operations if state.turned is not None else ()
     return process_of(
-        _in_order([*turned, *state.operations], plan.stages, [s.name for s in setups]),
+        _in_order(
+            [*turned, *state.operations],
+            plan.stages,
+            [s.name for s in setups],
+            {pocket: len(state.hosts_of(pocket)) for pocket in state.hosts},
+        ),
         state.findings,
         plan=plan,
         material=state.material,
@@ -98,10 +115,14 @@ def _setups(state: CasingPlanState) -> tuple[Setup, ...]:
 
 
 def _in_order(
-    operations: Sequence[Operation], stages: Sequence[Stage], setups: Sequence[str]
+    operations: Sequence[Operation],
+    stages: Sequence[Stage],
+    setups: Sequence[str],
+    depths: Mapping[str, int],
 ) -> list[Operation]:
     """Return the operations, which stand in the order of the plan's stages, setup by setup with what comes before each; within a stage
-    those of one tool follow each other, larger tools first where they rough."""
+    those of one tool follow each other, larger tools first where they rough, and those in recesses, by the `depths` of these, come after
+    what they are sunk into."""
     before = {s.name: set(s.after_all) | set(s.after) for s in stages}
     rank = {s.name: n for n, s in enumerate(stages)}
     first: dict[tuple[str, str], int] = {}
@@ -112,6 +133,7 @@ def _in_order(
         key=lambda e: (
             setups.index(e[1].setup),
             rank[e[1].group],
+            depths.get(e[1].feature, 0),
             first[e[1].group, e[1].tool.name],
             e[0],
         ),

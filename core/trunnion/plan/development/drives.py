@@ -79,7 +79,7 @@ def shank_clearance(
 
 def ring_of(ground: DevelopedGround) -> Region:
     """Return the area of ground on which the blank stands, and a little beside it."""
-    return ground.blank_over(WORTH).offset(BESIDE).intersect(ground.band(*ground.ends))
+    return ground.blank_over(WORTH).offset(BESIDE).intersect(ground.milled())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,7 +129,8 @@ def layers_over(
     floor, wall = number(operation, FLOOR_ALLOWANCE), number(operation, WALL_ALLOWANCE)
     mine = GroundCutter.of(operation)
     levels = []
-    for layer in layers_down(ground.top, floor, operation.data.depth, tops, floor):
+    top = ground.top_with(floor)
+    for layer in layers_down(top, floor, operation.data.depth, tops, floor):
         done = cleared_by(mine, ground, layer.bottom - floor)
         over = list[DriveLevel]()
         for z in reversed(layer.tops):
@@ -142,7 +143,7 @@ def layers_over(
         feature=operation.feature,
         kind=operation.kind,
         levels=tuple(levels),
-        stock_top=ground.top,
+        stock_top=top,
         faces=operation.faces,
         wall_allowance=wall,
         floor_allowance=0.0,

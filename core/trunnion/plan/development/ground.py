@@ -66,13 +66,24 @@ class GroundObstacle:
         return area.holes_filled() if self.closed and area else area
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GroundBounds:
+    """What of ground is milled: only the plan area of the faces with `tags`, holes in it filled, and where there is a
+    `ceiling`, only up to the straight line through two points, each a place along the straight lines and a height (mm): what is higher goes
+    with other ground."""
+
+    tags: tuple[int, ...]
+    ceiling: tuple[tuple[float, float], tuple[float, float]] | None = None
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class DevelopedGround:
     """Ground between two places (mm) along its straight lines, with what stands on it and around it.
 
     `rings` (k, 4): pieces of the meridians of what runs round, each from a place and a height to another one. `profile` (k, 2): the height
     mm of the blank over the plane at places along the straight lines. `found`: what the part has above heights, each worked out once, with
-    looks at `progress`.
+    looks at `progress`. `limit`: the area of the plane that alone is milled, where it is not all of the ground; `ceiling` (k,): the heights
+    mm at the profile's places above which the blank is cut with other ground.
     """
 
     development: Development
@@ -82,6 +93,8 @@ class DevelopedGround:
     profile: Floats
     progress: Progress = NO_PROGRESS
     found: dict[float, Region] = field(repr=False, default_factory=dict)
+    limit: Region | None = None
+    ceiling: Floats | None = None
 
     @property
     def least_radius(self) -> float:
@@ -90,10 +103,19 @@ class DevelopedGround:
 
     @property
     def top(self) -> float:
-        """How high the blank is over the ground, mm."""
+        """How high (mm) the blank is over the ground, up to the ceiling."""
+        return self.top_with(0.0)
+
+    def top_with(self, allowance: float) -> float:
+        """Return how high (mm) the blank is over the ground once what is above the ceiling is cut down to an allowance over it."""
         v = self.profile[:, 0]
         inside = (v >= self.ends[0]) & (v <= self.ends[1])
-        return float(self.profile[inside, 1].max())
+        return float(self._heights(allowance)[inside].max())
+
+    def _heights(self, allowance: float) -> Floats:
+        """Return how high (k,) mm the blank is at the profile's places, at most an allowance over the ceiling."""
+        high = self.profile[:, 1]
+        return high if self.ceiling is None else np.minimum(high, self.ceiling + allowance)
 
     @property
     def ring(self) -> Floats:
@@ -124,8 +146,19 @@ class DevelopedGround:
         return sector(self.development, low, high, half)
 
     def around(self) -> Region:
-        """Return the plane's area of the ground and of what is looked at around it."""
-        return self.band(self.ends[0] - AROUND, self.ends[1] + AROUND, AROUND)
+        """Return the plane's area of the ground, or of its limit, and of what is looked at around it."""
+        around = self.band(self.ends[0] - AROUND, self.ends[1] + AROUND, AROUND)
+        if self.limit is None:
+            return around
+        low, high = self.limit.box()
+        return around.intersect(
+            Region.rectangle(low[0] - AROUND, low[1] - AROUND, high[0] + AROUND, high[1] + AROUND)
+        )
+
+    def milled(self) -> Region:
+        """Return the plane's area of the ground that is milled, once around."""
+        band = self.band(*self.ends)
+        return band if self.limit is None else band.intersect(self.limit)
 
     @property
     def known(self) -> tuple[float, float]:
@@ -133,12 +166,12 @@ class DevelopedGround:
         return self.ends[0] - 0.5 * AROUND, self.ends[1] + 0.5 * AROUND
 
     def blank_over(self, z: float) -> Region:
-        """Return the plane's area of the ground, once around, that the blank is over a height on."""
-        v, high = self.profile.T
+        """Return the plane's area of the ground, once around, that the blank up to the ceiling is over a height on."""
+        v, high = self.profile[:, 0], self._heights(0.0)
         over = (high > z) & (v >= self.ends[0]) & (v <= self.ends[1])
         edges = np.flatnonzero(np.diff(np.concatenate([[False], over, [False]]).astype(int)))
         step = float(v[1] - v[0])
-        return union_all(
+        found = union_all(
             [
                 self.band(
                     max(float(v[a]) - step, self.ends[0]), min(float(v[b - 1]) + step, self.ends[1])
@@ -146,6 +179,7 @@ class DevelopedGround:
                 for a, b in edges.reshape(-1, 2).tolist()
             ]
         )
+        return found if self.limit is None else found.intersect(self.limit)
 
     def over(self, z: float) -> Region:
         """Return the plane's area over which the part reaches higher than a height."""
@@ -186,6 +220,7 @@ class DevelopedGround:
         """Return the area that the envelope of a cutter may be in, its tip at a height: shank and holder keep `around` mm from the part
         beside and `above` mm over it, but for a relieved neck where the flutes reach over the ring: what is beside it there came finished.
         Nothing outside `within` is looked at, nor anything in its way there (None: all the ground)."""
+        within = self.limit if within is None else within
         obstacles = [self._near(z + SKIM, within, 0.0)]
         over_ring = z + tool.flute_length >= self.ring_top
         for z0, r0, _, r1 in tool.profile():
@@ -197,6 +232,8 @@ class DevelopedGround:
                 grown = max(more + around, 0.0)
                 obstacles.append(self._near(height, within, grown).offset(grown))
         area = self.around() if within is None else within
+        if self.limit is not None:
+            area = area.intersect(self.limit)
         return area.minus(union_all(obstacles))
 
     def _near(self, z: float, within: Region | None, beside: float) -> Region:
@@ -243,9 +280,12 @@ def ground_of(
     rings: tuple[int, ...],
     blank: Blank,
     progress: Progress,
+    limited: GroundBounds | None = None,
 ) -> DevelopedGround:
     """Return ground with what stands on it: sets of faces by their tags, and whether openings in them are no way down; `rings` are faces of
-    revolution that run round. Sets too far beyond its ends to be in a cutter's way on it are left out."""
+    revolution that run round. Sets too far beyond its ends to be in a cutter's way on it are left out, and triangles too far beside its
+    limit, where it has one."""
+    limit = None if limited is None else _plan_area_of(limited.tags, mesh, development)
     margin = AROUND / float(development.radius_at(np.array(ends)).min())
     made = []
     for tags, closed in progress.each(obstacles):
@@ -255,15 +295,42 @@ def ground_of(
         if low > ends[1] + 2.0 * AROUND or high < ends[0] - 2.0 * AROUND:
             continue
         flat = developed_triangles(corners, development, BELOW, margin)
-        made.append(GroundObstacle(corners=flat, closed=closed))
+        made.append(GroundObstacle(corners=_near_to(limit, flat), closed=closed))
+    profile = blank_profile(development, ends, blank)
     return DevelopedGround(
         development=development,
         ends=ends,
         obstacles=tuple(made),
         rings=_meridians(development, mesh, rings),
-        profile=blank_profile(development, ends, blank),
+        profile=profile,
         progress=progress,
+        limit=limit,
+        ceiling=_line_at(limited.ceiling, profile[:, 0]) if limited and limited.ceiling else None,
     )
+
+
+def _plan_area_of(tags: tuple[int, ...], mesh: Mesh, development: Development) -> Region:
+    """Return the plane's area that faces are over, holes in it filled."""
+    corners = mesh.points[mesh.triangles[np.isin(mesh.face, tags)]]
+    flat = developed_triangles(corners, development, BELOW, 0.0)
+    return plan_area_above(flat, BELOW, GROWN).holes_filled()
+
+
+def _near_to(limit: Region | None, flat: Floats) -> Floats:
+    """Return the triangles (m, 3, 3) over the plane that a cutter within a limit comes near to."""
+    if limit is None:
+        return flat
+    low, high = limit.box()
+    near = (flat[:, :, :2].max(axis=1) > np.asarray(low) - 2.0 * AROUND) & (
+        flat[:, :, :2].min(axis=1) < np.asarray(high) + 2.0 * AROUND
+    )
+    return flat[near.all(axis=1)]
+
+
+def _line_at(line: tuple[tuple[float, float], tuple[float, float]], v: Floats) -> Floats:
+    """Return the heights (k,) of a straight line through two points at places (k,)."""
+    (v0, h0), (v1, h1) = line
+    return np.asarray(h0 + (h1 - h0) * (v - v0) / (v1 - v0))
 
 
 def _meridians(development: Development, mesh: Mesh, tags: tuple[int, ...]) -> Floats:

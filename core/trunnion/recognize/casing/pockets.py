@@ -44,11 +44,15 @@ def find_pockets(faces: CasingFaces, bosses: Sequence[BossFaces]) -> tuple[Pocke
         waiting -= set(bottom)
         found.append(_pocket(faces, bottom, bosses, of_bosses))
     taken = of_bosses | {r for p in found for r in p.rows}
-    for row in faces.present:
-        if row not in taken and _is_recess(faces, row):
-            recess = _pocket(faces, (row,), bosses, of_bosses)
-            found.append(recess)
-            taken |= set(recess.rows)
+    before = -1
+    while before < len(found):
+        # A recess that others are sunk into is one once these are found.
+        before, sunk = len(found), {r for p in found for r in p.side}
+        for row in faces.present:
+            if row not in taken and _is_recess(faces, row, sunk):
+                recess = _pocket(faces, (row,), bosses, of_bosses)
+                found.append(recess)
+                taken |= set(recess.rows)
     return tuple(found)
 
 
@@ -127,8 +131,9 @@ RISES = 0.7
 """Cosine between the normals of a bottom and of what rises from it: 45 degrees and more."""
 
 
-def _is_recess(faces: CasingFaces, row: int) -> bool:
-    """Return whether a turned face is the floor of a milled recess: it does not run round, and milled walls rise all around it."""
+def _is_recess(faces: CasingFaces, row: int, sunk: set[int]) -> bool:
+    """Return whether a turned face is the floor of a milled recess: it does not run round, and milled walls rise all around it. Another
+    recess may be sunk into it, whose walls are in `sunk`."""
     graph = faces.graph
     if row in faces.holes or not faces.turned[row] or faces.runs_round(row):
         return False
@@ -136,6 +141,7 @@ def _is_recess(faces: CasingFaces, row: int) -> bool:
         (graph.convexity[e], graph.across(e, row))
         for e in graph.edges_of[row]
         if graph.across(e, row) not in faces.holes
+        and not (graph.convexity[e] == CONVEX and graph.across(e, row) in sunk)
     ]
     walls = [n for c, n in rim if c != CONVEX]
     return (

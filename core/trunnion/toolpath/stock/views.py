@@ -7,6 +7,7 @@ the blank that no field has above it: taken over in steps of a cell, always on t
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -62,7 +63,7 @@ class StockViews:
                 self._known[name, key] = stock.digest
                 self._stocks[name] = _lowered_over(
                     self._stocks[name],
-                    setup.frame,
+                    setup.frame.to_world,
                     stock,
                     development,
                     _lowest(self._blank, setup.frame),
@@ -70,11 +71,23 @@ class StockViews:
         return self._stocks[name]
 
     def over_ground(self, ground: RollingGround) -> PlanningStock:
-        """Return the stock over the plane of a development, with all that was cut over it."""
+        """Return the stock over the plane of a development, with all that was cut over it, and over the ground that it is sunk into."""
         name = digest(ground.development)
         if name not in self._grounds:
             self._grounds[name] = (ground.development, _over(ground))
+        if ground.upper is not None:
+            self._lower(name, ground.development, ground.upper)
         return self._grounds[name][1]
+
+    def _lower(self, name: str, development: Development, upper: RollingGround) -> None:
+        """Take what was cut over an upper ground off the stock over a development."""
+        cut, key = self.over_ground(upper), digest(upper.development)
+        if self._known.get((name, key)) != cut.digest:
+            self._known[name, key] = cut.digest
+            lowered = _lowered_over(
+                self._grounds[name][1], development.to_world, cut, upper.development, 0.0
+            )
+            self._grounds[name] = (development, lowered)
 
     def cut_over(
         self,
@@ -136,19 +149,20 @@ def _lowered(
 
 def _lowered_over(
     stock: PlanningStock,
-    frame: Frame,
+    to_world: Callable[[Floats], Floats],
     other: PlanningStock,
     development: Development,
     lowest: float,
 ) -> PlanningStock:
-    """Return a stock without what the one over a development knows to be gone: beside that plane, and under it, nothing is known."""
+    """Return a stock without what the one over a development knows to be gone: beside that plane, and under it, nothing is known.
+    `to_world` takes positions over the stock's own plane (n, 3) to the part's coordinates."""
     material = maximum_filter(other.heights, NEIGHBOURHOOD, mode="nearest")
     positions, heights = _centres(stock), stock.heights.ravel().copy()
     step, last = stock.cell, np.array(material.shape) - 1
     rows = np.flatnonzero(heights > lowest)
     while len(rows):
         at = np.column_stack([positions[rows], heights[rows] - 0.5 * step])
-        there = development.to_local(frame.to_world(at))
+        there = development.to_local(to_world(at))
         cell = np.floor((there[:, :2] - other.corner) / other.cell).astype(np.int64)
         known = ((cell >= 0) & (cell <= last)).all(axis=1)
         gone = known & (there[:, 2] - step > material[tuple(np.clip(cell, 0, last).T)])
