@@ -14,8 +14,8 @@ from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Feature, Recognition
 from trunnion.part.read.part_file import read_part
 from trunnion.plan.casing.bottoms import casing_bottoms
-from trunnion.plan.casing.region_plan import casing_regions
-from trunnion.plan.casing.settings import RegionSettings
+from trunnion.plan.casing.regions.plan import casing_regions
+from trunnion.plan.casing.regions.settings import RegionSettings
 from trunnion.plan.casing.uncut.boss_pieces import pieces_inside
 from trunnion.plan.casing.uncut.throat import milled_boss, pieces_between
 from trunnion.recognize.casing import CasingFamily, CasingSettings

@@ -21,7 +21,7 @@ from trunnion.part.read.part_file import read_part
 from trunnion.pipeline import Engine
 from trunnion.plan.casing.bottoms import CasingBottom, casing_bottoms, casing_faces
 from trunnion.plan.casing.grounds import fine_mesh, ground_under
-from trunnion.plan.casing.recess_walls import recess_walls
+from trunnion.plan.casing.recess.walls import recess_walls
 from trunnion.plan.casing.route import make_casing_route
 from trunnion.plan.development.drives import ring_of
 from trunnion.plan.development.ground import DevelopedGround

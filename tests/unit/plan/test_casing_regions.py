@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.plan.casing.bands import BossBox, bands_of, free_gaps, widened
-from trunnion.plan.casing.gaps import busy_time, shortest_gap, speed_for
-from trunnion.plan.casing.regions import (
+from trunnion.plan.casing.regions.bands import BossBox, bands_of, free_gaps, widened
+from trunnion.plan.casing.regions.gaps import busy_time, shortest_gap, speed_for
+from trunnion.plan.casing.regions.regions import (
     around_bosses,
     merged,
     regions_of,
@@ -19,7 +19,7 @@ from trunnion.plan.casing.regions import (
     uncovered,
     without_slivers,
 )
-from trunnion.plan.casing.settings import RegionSettings
+from trunnion.plan.casing.regions.settings import RegionSettings
 from trunnion.plan.turning.retract import travel_time
 from trunnion.recognize.casing.meridian import Meridian
 from trunnion.settings import choose

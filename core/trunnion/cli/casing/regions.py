@@ -38,8 +38,8 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the regions of a casing."""
-    from trunnion.plan.casing.region_plan import casing_regions, region_findings
-    from trunnion.plan.casing.settings import RegionSettings
+    from trunnion.plan.casing.regions.plan import casing_regions, region_findings
+    from trunnion.plan.casing.regions.settings import RegionSettings
     from trunnion.settings import checked, choose, declared
 
     own = {name: d.key for d in declared(RegionSettings) for name in (d.name, d.key)}

@@ -17,7 +17,7 @@ from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.tool import Tool
 from trunnion.plan.casing.bottom_route import LEAST, cutter_clearance
 from trunnion.plan.casing.plan_state import CasingPlanState
-from trunnion.plan.casing.settings import RegionSettings
+from trunnion.plan.casing.regions.settings import RegionSettings
 from trunnion.plan.cutting.interrupted import INTERRUPTED, interrupted_data
 from trunnion.plan.development.drives import OFF_STOCK, ROUGH, GroundCutter
 from trunnion.plan.development.gap_passes import gap_passes, turned_region

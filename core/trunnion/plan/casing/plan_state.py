@@ -16,7 +16,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.part import Part
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
-from trunnion.plan.casing.settings import RegionSettings
+from trunnion.plan.casing.regions.settings import RegionSettings
 from trunnion.plan.casing.turning_route import TurnedRoute
 from trunnion.plan.contract import PartContext
 from trunnion.plan.cutting.milling import CuttingSettings, cutting_data

@@ -16,8 +16,8 @@ from trunnion.plan.casing.drives import gaps_driven, holes_driven, plane_driven,
 from trunnion.plan.casing.grounds import fine_mesh
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
 from trunnion.plan.casing.plan_state import CasingPlanState
+from trunnion.plan.casing.regions.settings import RegionSettings
 from trunnion.plan.casing.route import CUTTER_RULES, make_casing_route
-from trunnion.plan.casing.settings import RegionSettings
 from trunnion.plan.casing.turning_route import after_turning, plan_turned, revolved_driven
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.cutting.milling import CuttingSettings

@@ -24,7 +24,7 @@ from trunnion.plan.casing.bottom_route import (
 from trunnion.plan.casing.hole_route import RULES, casing_holes, plan_holes
 from trunnion.plan.casing.interrupted_route import GAPS, plan_gaps
 from trunnion.plan.casing.plan_state import CasingPlanState
-from trunnion.plan.casing.recess_route import (
+from trunnion.plan.casing.recess.route import (
     RECESS_FILLET,
     RECESS_SIDE,
     plan_recess,

@@ -8,10 +8,10 @@ from typing import Any
 from trunnion.findings import Finding, error, info
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.feature import Recognition
-from trunnion.plan.casing.bands import MILL, TURN, BossBox, BottomBand, bands_of, widened
 from trunnion.plan.casing.bottoms import CasingBottom, casing_bottoms
-from trunnion.plan.casing.gaps import shortest_gap, speed_for
-from trunnion.plan.casing.regions import (
+from trunnion.plan.casing.regions.bands import MILL, TURN, BossBox, BottomBand, bands_of, widened
+from trunnion.plan.casing.regions.gaps import shortest_gap, speed_for
+from trunnion.plan.casing.regions.regions import (
     COVERED,
     BandRun,
     MachiningRegion,
@@ -24,7 +24,7 @@ from trunnion.plan.casing.regions import (
     uncovered,
     without_slivers,
 )
-from trunnion.plan.casing.settings import RegionSettings
+from trunnion.plan.casing.regions.settings import RegionSettings
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import degrees
 

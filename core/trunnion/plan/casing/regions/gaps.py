@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from trunnion.plan.casing.settings import RegionSettings
+from trunnion.plan.casing.regions.settings import RegionSettings
 from trunnion.plan.turning.retract import travel_time
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, radians
 

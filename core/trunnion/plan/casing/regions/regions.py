@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from trunnion.plan.casing.bands import FULL, INTERRUPTED, MILL, TURN, BottomBand
+from trunnion.plan.casing.regions.bands import FULL, INTERRUPTED, MILL, TURN, BottomBand
 from trunnion.recognize.casing.meridian import Meridian
 from trunnion.units import degrees
 

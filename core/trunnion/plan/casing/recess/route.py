@@ -22,7 +22,7 @@ from trunnion.plan.casing.bottom_route import grounds_in_order
 from trunnion.plan.casing.bottoms import casing_faces
 from trunnion.plan.casing.grounds import bottom_of
 from trunnion.plan.casing.plan_state import CasingPlanState
-from trunnion.plan.casing.recess_walls import LEANING, RecessWalls, WallGroup, recess_walls
+from trunnion.plan.casing.recess.walls import LEANING, RecessWalls, WallGroup, recess_walls
 from trunnion.plan.development.ground import SKIM, DevelopedGround
 from trunnion.plan.freeform.finishing.chord import chord_choices
 from trunnion.plan.freeform.frames import Direction

@@ -1,0 +1,1 @@
+"""Recesses sunk into the bottoms of casings."""

@@ -1,0 +1,1 @@
+"""Which regions of a casing's bottoms are turned, turned with interruptions, or milled."""
