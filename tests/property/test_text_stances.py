@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from leaning_paths import HEADER, lean, path_of, program, standing
@@ -82,6 +82,8 @@ directions = st.tuples(st.floats(1.0, 100.0), st.floats(0.0, 360.0))
 
 
 @settings(deadline=None)
+# At the end of an axis a written angle may be a hair beyond it: it is still within, not a whole turn away.
+@example("sinumerik", SHOP.machine("Trunnion 650"), [(30.0, 218.0)], [(1.0, 0.0), (1.0, 0.0)])
 @given(
     st.sampled_from(DIALECTS),
     st.sampled_from(MACHINES),

@@ -168,7 +168,8 @@ def test_a_rotating_tools_surface_speed_is_posted_as_its_spindle_speed():
 
 
 def test_the_setup_sheet_says_what_programs_give():
-    data = session().process.operations[0].data
-    assert (spindle(data), feed(data)) == ("12000", "3600")
-    assert spindle(surface()) == "500 m/min, at most 9000"
+    operation = session().process.operations[0]
+    data = operation.data
+    assert (spindle(operation), feed(data)) == ("12000", "3600")
+    assert spindle(replace(operation, data=surface())) == "500 m/min, at most 9000"
     assert feed(replace(data, feed_mode=FeedMode.REVOLUTION)) == "0.300 mm a revolution"

@@ -62,7 +62,9 @@ def choose_angles_greedy(
                 angle = (
                     before
                     if free[k, solution, a]
-                    else nearest_congruent(angles[k, solution, a], before, low[a], high[a])
+                    else nearest_congruent(
+                        angles[k, solution, a], before, low[a] - slack, high[a] + slack
+                    )
                 )
                 cost += abs(angle - before)
                 out += angle < low[a] - slack or angle > high[a] + slack
@@ -73,7 +75,9 @@ def choose_angles_greedy(
             result[k, a] = (
                 before
                 if free[k, best_solution, a]
-                else nearest_congruent(angles[k, best_solution, a], before, low[a], high[a])
+                else nearest_congruent(
+                    angles[k, best_solution, a], before, low[a] - slack, high[a] + slack
+                )
             )
         turned += best
         outside += best_out > 0
