@@ -78,7 +78,7 @@ def ground(radius: float = 200.0, slope: float = 0.0) -> Development:
 
 def drive(*passes: GapPass, on: Development | None = None) -> GapDrive:
     """Return the drive of passes."""
-    return GapDrive(development=on or ground(), passes=passes, clearance=60.0, faces=(1,))
+    return GapDrive(development=on or ground(), passes=passes, clearance=60.0)
 
 
 def two_gaps(along: float, lift: float = 15.0) -> GapPass:

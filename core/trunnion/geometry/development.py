@@ -100,9 +100,9 @@ class Development:
     def to_world(self, flat: Floats) -> Floats:
         """Return points (..., 3) in the part's coordinates of u, v, h."""
         y, turn = self.along_and_turn(flat)
-        return self.round_world(y, turn, flat[..., 2])
+        return self.points_about_axis(y, turn, flat[..., 2])
 
-    def round_world(self, along: Floats, turns: Floats, heights: Floats) -> Floats:
+    def points_about_axis(self, along: Floats, turns: Floats, heights: Floats) -> Floats:
         """Return points (..., 3) in the part's coordinates at places along the straight lines, angles (rad) about the axis from the plane's
         middle, which may pass half a turn, and heights (mm) over the surface."""
         across, up = self._along
@@ -115,9 +115,9 @@ class Development:
 
     def normals(self, flat: Floats) -> Floats:
         """Return the unit normals (..., 3) out of the surface, in the part's coordinates, over u, v, h."""
-        return self.round_normals(self.along_and_turn(flat)[1])
+        return self.normals_about_axis(self.along_and_turn(flat)[1])
 
-    def round_normals(self, turns: Floats) -> Floats:
+    def normals_about_axis(self, turns: Floats) -> Floats:
         """Return the unit normals (..., 3) out of the surface, in the part's coordinates, at angles (rad) about the axis from the plane's
         middle."""
         across, along = self._along

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from trunnion.plan.casing.regions.bands import BossBox, bands_of, free_gaps, widened
 from trunnion.plan.casing.regions.gaps import busy_time, shortest_gap, speed_for
-from trunnion.plan.casing.regions.regions import (
+from trunnion.plan.casing.regions.machining_regions import (
     around_bosses,
     merged,
     regions_of,

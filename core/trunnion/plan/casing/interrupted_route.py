@@ -60,24 +60,18 @@ def plan_gaps(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
         return
     best = next(t for t in tried if t.area >= AS_GOOD * most)
     data, state.gaps[pocket.id] = best.data, best.finished
-    state.operations.append(
-        Operation(
-            id=f"{stage.name}-{pocket.id}".replace(" ", "-"),
-            kind=stage.kind,
-            strategy=stage.strategy,
-            feature=pocket.id,
-            setup=state.setup.name,
-            tool=best.tool,
-            data=data,
-            faces=pocket.with_role(BOTTOM),
-            choices=best.choices,
-            rules=(
-                stage.rule,
-                f"{best.tool.name}: at {trimmed(data.speed, 1)} m/min gaps of {trimmed(best.shortest_gap, 0)} mm and more are turned, "
-                f"{trimmed(100.0 * best.area / ground.band(*ground.ends).area, 0)} % of the bottom; the rest is milled.",
-            ),
-            group=stage.name,
-        )
+    state.add(
+        stage,
+        pocket.id,
+        pocket.id,
+        best.tool,
+        depth=data.depth,
+        width=data.width,
+        faces=pocket.with_role(BOTTOM),
+        choices=best.choices,
+        why=f"{best.tool.name}: at {trimmed(data.speed, 1)} m/min gaps of {trimmed(best.shortest_gap, 0)} mm and more are turned, "
+        f"{trimmed(100.0 * best.area / ground.band(*ground.ends).area, 0)} % of the bottom; the rest is milled.",
+        data=data,
     )
     state.findings.append(
         info(
@@ -119,7 +113,6 @@ def gap_drive(
             _motion_of(operation),
         ),
         clearance=clearance,
-        faces=operation.faces,
     )
 
 

@@ -11,7 +11,7 @@ from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.material import Machine, Material
-from trunnion.model.operation import Operation
+from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.part import Part
@@ -97,10 +97,13 @@ class CasingPlanState:
         others: tuple[str, ...] = (),
         kind: str = "",
         setup: str = "",
+        data: CuttingData | None = None,
     ) -> None:
-        """Add an operation of a stage, with data for a depth and a width (mm) of cut; in this setup where none is named."""
+        """Add an operation of a stage, with milling data for a depth and a width (mm) of cut where no others are given; in this setup where
+        none is named."""
         kind = kind or stage.kind
-        data = cutting_data(tool, self.material, self.machine, kind, self.cutting, depth, width)
+        if data is None:
+            data = cutting_data(tool, self.material, self.machine, kind, self.cutting, depth, width)
         self.operations.append(
             Operation(
                 id=f"{stage.name}-{name}".replace(" ", "-"),

@@ -24,7 +24,6 @@ class GapDrive:
     development: Development
     passes: tuple[GapPass, ...]
     clearance: float
-    faces: tuple[int, ...]
 
     @property
     def is_empty(self) -> bool:

@@ -112,15 +112,15 @@ def interrupted(
     """Return the motions that turn every gap of the drive, the table turning one way all along."""
     if drive.is_empty:
         return Planned()
-    way = _Way(drive, settings, data.speed * PER_MINUTE)
+    path = _GapPath(drive, settings, data.speed * PER_MINUTE)
     short = 0
     for each in progress.each(drive.passes):
         radius = float(drive.development.radius_at(np.array([each.along]))[0])
         least = 2.0 * settings.motion.end(data.speed, each.lift) / radius
         gaps = tuple(g for g in each.gaps if g[1] - g[0] > least)
         short += len(each.gaps) - len(gaps)
-        way.add(replace(each, gaps=gaps))
-    return Planned(path=way.made(setup), findings=_left(short, tool))
+        path.add(replace(each, gaps=gaps))
+    return Planned(path=path.made(setup), findings=_left(short, tool))
 
 
 def _left(short: int, tool: Tool) -> tuple[Finding, ...]:
@@ -135,7 +135,7 @@ def _left(short: int, tool: Tool) -> tuple[Finding, ...]:
     )
 
 
-class _Way:
+class _GapPath:
     """The way of the tool's tip in the making: rows of place along the ground, angle, height (mm, rad, mm) and what they are for."""
 
     def __init__(self, drive: GapDrive, settings: GapSettings, speed: float) -> None:
@@ -217,7 +217,7 @@ class _Way:
         rows = np.vstack([ends[:1], rows, ends[1:]])
         marks = np.concatenate([[Mark.RETRACT], *self._marks, [Mark.RETRACT]])
         development, frame = self.drive.development, setup.frame
-        position = frame.to_local(development.round_world(*rows.T))
+        position = frame.to_local(development.points_about_axis(*rows.T))
         n = len(rows)
         motion = np.full(n, Motion.LINE)
         motion[[0, 1, -1]] = Motion.RAPID
@@ -230,7 +230,7 @@ class _Way:
         feed = np.divide(SECONDS_PER_MINUTE * length, seconds, out=np.zeros(n), where=cuts)
         return Toolpath(
             position=position,
-            axis=frame.local_direction(development.round_normals(rows[:, 1])),
+            axis=frame.local_direction(development.normals_about_axis(rows[:, 1])),
             motion=motion,
             centre=np.full((n, 3), np.nan),
             feed=feed,

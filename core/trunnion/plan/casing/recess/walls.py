@@ -27,8 +27,6 @@ SHALLOWEST = math.cos(math.radians(30.0))
 """Sine of the most that a wall leans outwards from a direction it is still cut along by levels."""
 BENT = 1e-3
 """Share of a face's normals across their mean from which on it is bent, and upright to one direction alone."""
-
-
 LEANING = math.sin(math.radians(0.5))
 """Sine of the angle by which a wall leans in over the bottom from which on it does: a disc of 4 mm stays 0.03 mm off its foot."""
 LESS = math.radians(3.0)

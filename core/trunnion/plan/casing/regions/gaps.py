@@ -12,11 +12,9 @@ from __future__ import annotations
 import math
 
 from trunnion.plan.casing.regions.settings import RegionSettings
+from trunnion.plan.turning.gap_motion import PER_MINUTE
 from trunnion.plan.turning.retract import travel_time
-from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, radians
-
-PER_MINUTE = MM_PER_METRE / SECONDS_PER_MINUTE
-"""mm/s in a m/min."""
+from trunnion.units import radians
 
 
 def busy_time(height: float, settings: RegionSettings) -> float:

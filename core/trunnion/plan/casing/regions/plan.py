@@ -11,7 +11,7 @@ from trunnion.model.feature import Recognition
 from trunnion.plan.casing.bottoms import CasingBottom, casing_bottoms
 from trunnion.plan.casing.regions.bands import MILL, TURN, BossBox, BottomBand, bands_of, widened
 from trunnion.plan.casing.regions.gaps import shortest_gap, speed_for
-from trunnion.plan.casing.regions.regions import (
+from trunnion.plan.casing.regions.machining_regions import (
     COVERED,
     BandRun,
     MachiningRegion,
