@@ -41,7 +41,6 @@ def of_solid(depth, size=20.0, bundles=("x", "y", "z")):
     stock.open_field()
     for bundle in stock.rays.values():
         u, v, w = cycle(bundle.axis)
-        bundle.count[:] = 0
         samples = np.concatenate([[0.0], np.linspace(0.0, size, 201), [size]])
         points = np.zeros((bundle.rows, bundle.columns, len(samples), 3))
         points[..., u] = ((np.arange(bundle.columns) + 0.5) * PITCH)[:, None]
@@ -59,9 +58,13 @@ def of_solid(depth, size=20.0, bundles=("x", "y", "z")):
                 np.where(found[:, None], low, middle),
                 np.where(found[:, None], middle, high),
             )
-        for r, up, end in zip(ray, upwards, high[:, w], strict=True):
-            (bundle.low if up else bundle.high)[r, bundle.count[r]] = end
-            bundle.count[r] += not up
+        ends = high[:, w]
+        parts = []
+        for first, last in np.array(bundle.tiles()) * bundle.columns:
+            own = (ray >= first) & (ray < last)
+            count = np.bincount(ray[own & upwards] - first, minlength=last - first)
+            parts.append((count, ends[own & upwards], ends[own & ~upwards]))
+        bundle.put(parts)
     return stock
 
 

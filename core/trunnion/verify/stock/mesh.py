@@ -63,9 +63,7 @@ def mesh_of_rays(stock: Stock, most: int = MOST) -> tuple[Floats, Ints]:
     box = (stock.low, stock.high)
     none = Bundle.of(stock.blank, max(stock.high - stock.low), 0, box)
     bundles = [stock.rays.get(axis, none) for axis in AXES]
-    counts, lows, highs = (
-        tuple(getattr(b, name) for b in bundles) for name in ("count", "low", "high")
-    )
+    firsts, lows, highs = zip(*(b.packed() for b in bundles), strict=True)
     has = np.array([axis in stock.rays for axis in AXES])
     cells, origin = (
         np.array(cells_along(stock.high - stock.low, stock.pitch)),
@@ -75,13 +73,13 @@ def mesh_of_rays(stock: Stock, most: int = MOST) -> tuple[Floats, Ints]:
         1, math.ceil((float(cells.prod()) / MOST_NODES) ** (1.0 / 3.0) - tolerance.PARAMETRIC)
     )
     n_points, n_faces = contouring.count_dual_mesh(
-        counts, lows, highs, cells, origin, stock.pitch, step
+        firsts, lows, highs, cells, origin, stock.pitch, step
     )
     if 2 * n_faces > most:
         step = math.ceil(step * math.sqrt(2 * n_faces / most))
         n_points, n_faces = contouring.count_dual_mesh(
-            counts, lows, highs, cells, origin, stock.pitch, step
+            firsts, lows, highs, cells, origin, stock.pitch, step
         )
     return contouring.dual_contour(
-        counts, lows, highs, has, cells, origin, stock.pitch, step, n_points, n_faces
+        firsts, lows, highs, has, cells, origin, stock.pitch, step, n_points, n_faces
     )

@@ -137,6 +137,7 @@ def run_rays(
             jobs = [
                 _Job(
                     g,
+                    number,
                     tile,
                     batch,
                     max(first, g.first - row),
@@ -145,7 +146,7 @@ def run_rays(
                 )
                 for g in starts
                 if g.first < row + last
-                for tile in g.bundle.tiles()
+                for number, tile in enumerate(g.bundle.tiles())
             ]
             part = progress.part(
                 float(begun + spans.start[first]) / ends[-1],
@@ -159,7 +160,7 @@ def run_rays(
 
 
 def _run(jobs: list[_Job], bundles: Sequence[Bundle], progress: Progress, threads: int) -> None:
-    """Run jobs until all are done, giving rays more room where they need it, and where memory has none filling gaps shorter than a cell."""
+    """Run jobs until all are done, giving tiles more room where they need it; where memory has none gaps shorter than a cell are filled."""
     waiting = jobs
     while waiting:
 
@@ -170,14 +171,13 @@ def _run(jobs: list[_Job], bundles: Sequence[Bundle], progress: Progress, thread
         in_parallel(work, len(waiting), 1, progress, "Cutting the stock", threads)
         waiting = [job for job in waiting if not job.done]
         for bundle in {job.bundle.axis: job.bundle for job in waiting}.values():
-            if sum(b.nbytes for b in bundles) + bundle.nbytes > MOST_BYTES:
-                if bundle.fill_gaps(bundle.pitch):
-                    continue
+            full = {job.number for job in waiting if job.bundle is bundle}
+            most = MOST_BYTES - sum(b.nbytes for b in bundles if b is not bundle)
+            if not (bundle.grow(full, most) or bundle.fill_gaps(bundle.pitch, full, most)):
                 raise OutOfMemory(
                     f"stock at cells of {bundle.pitch:g} mm has become so ragged that it would need more than "
                     f"{MOST_BYTES / 1e6:.0f} MB: choose a coarser verify.cell"
                 )
-            bundle.grow()
 
 
 class _Job:
@@ -186,6 +186,7 @@ class _Job:
     def __init__(
         self,
         start: BundleStart,
+        number: int,
         tile: tuple[int, int],
         batch: _Batch,
         first: int,
@@ -193,8 +194,9 @@ class _Job:
         looked: bool,
     ) -> None:
         n = last - first
-        self.bundle, self.tile, self.batch, self.first, self.last, self.done = (
+        self.bundle, self.number, self.tile, self.batch, self.first, self.last, self.done = (
             start.bundle,
+            number,
             tile,
             batch,
             first,
@@ -221,7 +223,7 @@ class _Job:
         )
 
     def run(self) -> None:
-        """Go on until all moves are done or a ray has no room."""
+        """Go on until all moves are done or the tile has no room."""
         own, b, m = slice(self.first, self.last), self.bundle, self.batch
         self.done = kernel.tridexel_cut_tile(
             self.last - self.first,
@@ -232,9 +234,7 @@ class _Job:
             m.bodies.start,
             m.tool[own],
             m.rapid[own],
-            b.count,
-            b.low,
-            b.high,
+            b.rays(self.number),
             b.columns,
             *self.tile,
             b.origin,

@@ -14,7 +14,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.verify.finish.sweep import Sweep
-from trunnion.verify.stock.bundles import AXES, SPARE, Bundle
+from trunnion.verify.stock.bundles import AXES, RAY_BYTES, Bundle
 from trunnion.verify.stock.field import Field, Part, cells_along
 
 MOST_BYTES = 2_000_000_000
@@ -93,8 +93,7 @@ class Stock:
         low, high = box or (blank.low, blank.high)
         x, y, z = cells_along(high - low, pitch)
         rays = {"x": y * z, "y": z * x, "z": x * y}
-        ray = 8 * (1 + 2 * SPARE)
-        return sum(rays[name] * (8 if tuple(bundles) == ("z",) else ray) for name in bundles)
+        return sum(rays[name] * (8 if tuple(bundles) == ("z",) else RAY_BYTES) for name in bundles)
 
     @property
     def frame(self) -> Frame:
@@ -134,8 +133,7 @@ class Stock:
         """Turn the height field into intervals: from now on anything may be cut."""
         if self.field is not None:
             _refuse(
-                8 * (1 + 2 * SPARE) * self.field.top.size
-                + sum(b.nbytes for b in self.rays.values()),
+                RAY_BYTES * self.field.top.size + sum(b.nbytes for b in self.rays.values()),
                 self.pitch,
             )
             self.rays["z"], self.field = Bundle.of_field(self.field), None

@@ -23,23 +23,23 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 REACH = 3.0
 """How many cells apart the ends of neighbouring rays may be to belong to one surface."""
 BEND = 0.5
-"""Slopes on both sides of a ray that differ by more are those of an edge between two surfaces: the smaller one counts."""
+"""Slopes on both sides of a ray that differ by more are those of an edge between two surfaces: the smaller one firsts."""
 CALM = 0.01
 """How strongly a point is held where its planes leave it free, beside the planes' own pull."""
 
-Counts = tuple[Ints, Ints, Ints]
+Firsts = tuple[Ints, Ints, Ints]
 Ends = tuple[Floats, Floats, Floats]
 
 
 @njit(cache=True, nogil=True)
-def _nearest_crossing(count: Ints, ends: Floats, ray: int, position: float, reach: float) -> float:
+def _nearest_crossing(first: Ints, ends: Floats, ray: int, position: float, reach: float) -> float:
     """Return the end of material (mm) on a ray that is nearest to a position, NaN where none is within
     `reach` (mm)."""
     best, found = reach, np.nan
-    for k in range(count[ray]):
-        away = abs(ends[ray, k] - position)
+    for k in range(first[ray], first[ray + 1]):
+        away = abs(ends[k] - position)
         if away <= best:
-            best, found = away, ends[ray, k]
+            best, found = away, ends[k]
     return found
 
 
@@ -48,7 +48,7 @@ def _edge_crossing(
     axis: int,
     cell: Ints,
     leaves: bool,
-    counts: Counts,
+    firsts: Firsts,
     lows: Ends,
     highs: Ends,
     cells: Ints,
@@ -74,9 +74,9 @@ def _edge_crossing(
     position[axis] += half
     if not has[axis]:
         return
-    count, ends = counts[axis], highs[axis] if leaves else lows[axis]
+    first, ends = firsts[axis], highs[axis] if leaves else lows[axis]
     end = _nearest_crossing(
-        count, ends, cell[v] * cells[u] + cell[u], position[axis], half * (1.0 + 1e-9)
+        first, ends, cell[v] * cells[u] + cell[u], position[axis], half * (1.0 + 1e-9)
     )
     if np.isnan(end):
         return
@@ -90,7 +90,7 @@ def _edge_crossing(
             if not 0 <= neighbour < cells[across]:
                 continue
             ray = cell[v] * cells[u] + neighbour if side == 0 else neighbour * cells[u] + cell[u]
-            other = _nearest_crossing(count, ends, ray, end, REACH * pitch)
+            other = _nearest_crossing(first, ends, ray, end, REACH * pitch)
             if np.isnan(other):
                 continue
             rise = (other - end) / (sense * pitch)
@@ -111,7 +111,7 @@ def _edge_crossing(
 @njit(cache=True, nogil=True)
 def _classify_layer(
     k: int,
-    count: Ints,
+    first: Ints,
     low: Floats,
     high: Floats,
     cells: Ints,
@@ -131,8 +131,8 @@ def _classify_layer(
     for j in range(nodes[1]):
         for i in range(nodes[0]):
             ray = (begin + j * step) * cells[0] + begin + i * step
-            for m in range(count[ray]):
-                if low[ray, m] <= z <= high[ray, m]:
+            for m in range(first[ray], first[ray + 1]):
+                if low[m] <= z <= high[m]:
                     inside[j + 1, i + 1] = True
                     break
 
@@ -164,7 +164,7 @@ def _dual_vertex(
     k: int,
     lower: Bools,
     upper: Bools,
-    counts: Counts,
+    firsts: Firsts,
     lows: Ends,
     highs: Ends,
     cells: Ints,
@@ -213,7 +213,7 @@ def _dual_vertex(
                     axis,
                     cell,
                     one,
-                    counts,
+                    firsts,
                     lows,
                     highs,
                     cells,
@@ -249,7 +249,7 @@ def _dual_vertex(
 
 @njit(cache=True, nogil=True)
 def count_dual_mesh(
-    counts: Counts, lows: Ends, highs: Ends, cells: Ints, origin: Floats, pitch: float, step: int
+    firsts: Firsts, lows: Ends, highs: Ends, cells: Ints, origin: Floats, pitch: float, step: int
 ) -> tuple[int, int]:
     """Return how many points and how many faces of four points the mesh of `dual_contour` has; arguments
     as there."""
@@ -261,7 +261,7 @@ def count_dual_mesh(
     points, faces = 0, 0
     # Layer by layer from below: only two layers of nodes are kept at a time.
     for k in range(nodes[2] + 1):
-        _classify_layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
+        _classify_layer(k, firsts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(nodes[1] + 1):
             for i in range(nodes[0] + 1):
                 # A box whose eight nodes differ has a point; an edge whose nodes differ has a face.
@@ -306,7 +306,7 @@ def _add_quad(
 
 @njit(cache=True, nogil=True)
 def dual_contour(
-    counts: Counts,
+    firsts: Firsts,
     lows: Ends,
     highs: Ends,
     has: Bools,
@@ -320,8 +320,9 @@ def dual_contour(
     """Return points (v, 3) and triangles (t, 3), anticlockwise from outside, of the stock that three
     bundles of rays hold.
 
-    counts, lows, highs: of the bundles along x, y, z; ray v * cells[u] + u stands in cell (u, v) of
-    the two other axes, in cyclic order. has (3,): which bundles there are (z always); cells (3,)
+    firsts, lows, highs: of the bundles along x, y, z, the intervals of all rays in a row: ray c has
+    those from first[c] to first[c + 1]; ray v * cells[u] + u stands in cell (u, v) of the two other
+    axes, in cyclic order. has (3,): which bundles there are (z always); cells (3,)
     along each axis from origin (3,), `pitch` wide; a lattice of every `step`-th ray; n_points,
     n_faces: what `count_dual_mesh` says.
     """
@@ -334,7 +335,7 @@ def dual_contour(
     v, n = 0, 0
     # Layer by layer from below: only two layers of nodes are kept at a time.
     for k in range(nodes[2] + 1):
-        _classify_layer(k, counts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
+        _classify_layer(k, firsts[2], lows[2], highs[2], cells, nodes, origin, pitch, step, upper)
         for j in range(deep - 1):
             for i in range(wide - 1):
                 some = (
@@ -354,7 +355,7 @@ def dual_contour(
                         k,
                         lower,
                         upper,
-                        counts,
+                        firsts,
                         lows,
                         highs,
                         cells,

@@ -44,6 +44,18 @@ from trunnion.verify.kernels.body import (
     radius_at,
 )
 from trunnion.verify.kernels.stock.engagement import engagement_in_dexels
+from trunnion.verify.kernels.stock.intervals import (
+    COUNT,
+    FIRST,
+    NOISE,
+    SHRINK,
+    THIN,
+    Rays,
+    has_capacity,
+    ray_misses,
+    subtract_from_ray,
+    subtract_interval,
+)
 
 # Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends,
 # then the boxes of what cuts, of all and of the tip's path. Of an arc that runs level about an axis
@@ -69,12 +81,8 @@ SPAN_COLUMNS = 54
 # sort places on it.
 TWIST, SMALLER, MARKS = 12, 13, 14
 RAY_COLUMNS = 22
-SHRINK = 1e-6
-"""mm that bodies are made smaller by: a surface that was just cut to is not cut again by what only touches it."""
 MOST_GRAZED = 64
 """Positions that a rapid may be suspected at."""
-NOISE = 1e-7
-"""mm: depths less apart are the same."""
 GAP = 2e-4
 """mm: between two lobes of a tool that swings, what is less than three times this outside may be taken too, within a third of
 `tolerance.STOCK_CHORD`."""
@@ -86,8 +94,6 @@ LEVEL = 1e-9
 """An axis this close (its sine) lies along rays or across them, and a move this close (mm) is level."""
 EDGE = 1e-5
 """mm that a capsule is wider by: what its rows are rounded by where its axis runs nearly along them."""
-THIN = 1e-6
-"""mm: material thinner than this is nothing."""
 
 
 _in_body = njit(nogil=True, inline="always")(depth_in_body.py_func)
@@ -430,18 +436,6 @@ def _capsule_row(capsule: Floats, v: float) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True)
-def _ray_misses(
-    count: Ints, low: Floats, high: Floats, cell: int, bottom: float, top: float
-) -> bool:
-    """Return whether a ray has no material between two positions, or no more than what SHRINK leaves of a
-    cut."""
-    for k in range(count[cell]):
-        if high[cell, k] > bottom + 2.0 * SHRINK:
-            return low[cell, k] >= top - 2.0 * SHRINK
-    return True
-
-
-@njit(cache=True, nogil=True)
 def _cell_range(
     low: float, high: float, origin: float, pitch: float, first: int, last: int
 ) -> tuple[int, int]:
@@ -450,40 +444,6 @@ def _cell_range(
     a = int(math.ceil((low - origin) / pitch - 0.5))
     b = int(math.floor((high - origin) / pitch - 0.5)) + 1
     return max(a, first), min(b, last)
-
-
-@njit(cache=True, nogil=True)
-def subtract_interval(
-    count: Ints, low: Floats, high: Floats, cell: int, k: int, a: float, b: float
-) -> float:
-    """Subtract [a, b] from a ray's interval k (a < b, both within it); return the length (mm) that is
-    gone.
-
-    Remainders thinner than THIN go too. The ray needs room for one more interval. Intervals stay
-    sorted and disjoint.
-    """
-    left, right = a - low[cell, k] > THIN, high[cell, k] - b > THIN
-    # The middle goes: two intervals remain.
-    if left and right:
-        for m in range(count[cell], k + 1, -1):
-            low[cell, m], high[cell, m] = low[cell, m - 1], high[cell, m - 1]
-        low[cell, k + 1], high[cell, k + 1] = b, high[cell, k]
-        high[cell, k] = a
-        count[cell] += 1
-        return b - a
-    if left:
-        gone = high[cell, k] - a
-        high[cell, k] = a
-        return gone
-    if right:
-        gone = b - low[cell, k]
-        low[cell, k] = b
-        return gone
-    gone = high[cell, k] - low[cell, k]
-    for m in range(k, count[cell] - 1):
-        low[cell, m], high[cell, m] = low[cell, m + 1], high[cell, m + 1]
-    count[cell] -= 1
-    return gone
 
 
 @njit(cache=True, nogil=True)
@@ -552,9 +512,7 @@ def _tridexel_cut_arc(
     span: Floats,
     u: float,
     v: float,
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     cell: int,
     bottom: float,
     top: float,
@@ -576,7 +534,7 @@ def _tridexel_cut_arc(
     if lateral >= radius + r:
         return 0.0, True
     half = math.sqrt((radius + r) ** 2 - lateral * lateral)
-    if _ray_misses(count, low, high, cell, max(bottom, middle - half), min(top, middle + half)):
+    if ray_misses(rays, cell, max(bottom, middle - half), min(top, middle + half)):
         return 0.0, True
     n = 0
     for circle in (radius + r, radius - r):
@@ -604,33 +562,12 @@ def _tridexel_cut_arc(
         if inside and math.isnan(open_at):
             open_at = ray[MARKS + k]
         elif not inside and not math.isnan(open_at):
-            more, whole = _subtract_from_ray(
-                count, low, high, cell, max(open_at, bottom), min(ray[MARKS + k], top)
+            more, whole = subtract_from_ray(
+                rays, cell, max(open_at, bottom), min(ray[MARKS + k], top)
             )
             gone, open_at = gone + more, np.nan
             if not whole:
                 return gone, False
-    return gone, True
-
-
-@njit(cache=True, nogil=True)
-def _subtract_from_ray(
-    count: Ints, low: Floats, high: Floats, cell: int, a: float, b: float
-) -> tuple[float, bool]:
-    """Subtract [a, b] from all intervals of a ray; return the length (mm) that is gone, and whether
-    the ray had room for all that is left.
-
-    Overlaps thinner than NOISE are left.
-    """
-    gone, k = 0.0, 0
-    while k < count[cell]:
-        c, d = max(a, low[cell, k]), min(b, high[cell, k])
-        before = count[cell]
-        if d - c > NOISE:
-            if before + 1 > low.shape[1]:
-                return gone, False
-            gone += subtract_interval(count, low, high, cell, k, c, d)
-        k += 1 + count[cell] - before
     return gone, True
 
 
@@ -714,9 +651,7 @@ def _tridexel_cut_turning(
     ray: Floats,
     a: float,
     b: float,
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     cell: int,
 ) -> tuple[float, bool]:
     """Cut a ray between two positions that a body which turns reaches, but for the gaps between its
@@ -729,7 +664,7 @@ def _tridexel_cut_turning(
             edge = _bisect_entry(arcs, first, last, limit, ray, gap, end)
             if math.isnan(_certain_interval(arcs, first, last, limit, ray, end, edge)[1]):
                 end = edge
-        more, whole = _subtract_from_ray(count, low, high, cell, a, end)
+        more, whole = subtract_from_ray(rays, cell, a, end)
         gone += more
         if math.isnan(gap) or not whole:
             return gone, whole
@@ -747,9 +682,7 @@ def _tridexel_cut_ray(
     span: Floats,
     u: float,
     v: float,
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     cell: int,
     box: Floats,
 ) -> tuple[float, bool]:
@@ -763,15 +696,16 @@ def _tridexel_cut_ray(
     if abs(ray[5]) + abs(ray[8]) + ray[TWIST] < LEVEL:
         if span[ARC_RADIUS] == 0.0:
             a, b = _swept_disc_interval(arcs, first, last, limit, ray)
-            return _subtract_from_ray(count, low, high, cell, max(a, w_low), min(b, w_high))
+            return subtract_from_ray(rays, cell, max(a, w_low), min(b, w_high))
         return _tridexel_cut_arc(
-            arcs, first, last, limit, ray, span, u, v, count, low, high, cell, w_low, w_high
+            arcs, first, last, limit, ray, span, u, v, rays, cell, w_low, w_high
         )
     gone = 0.0
     middle = 0.5 * (w_low + w_high)
     k = 0
-    while k < count[cell]:
-        a, b = max(low[cell, k], w_low), min(high[cell, k], w_high)
+    while k < rays.ray[cell, COUNT]:
+        m = rays.ray[cell, FIRST] + k
+        a, b = max(rays.ends[m, 0], w_low), min(rays.ends[m, 1], w_high)
         if b <= a:
             k += 1
             continue
@@ -801,31 +735,29 @@ def _tridexel_cut_ray(
             k += 1
             continue
         # A cut may need one more interval, a gap another; the caller enlarges the rays and resumes.
-        before = count[cell]
+        before = rays.ray[cell, COUNT]
         # Of a tool that turns, both entries in the body at one of their times show that all between is.
         if turns and not (
             _both_inside_at(arcs, first, last, limit, ray, from_far, from_near, t_near)
             or _both_inside_at(arcs, first, last, limit, ray, from_near, from_far, t_far)
         ):
             more, whole = _tridexel_cut_turning(
-                arcs, first, last, limit, ray, from_a, from_b, count, low, high, cell
+                arcs, first, last, limit, ray, from_a, from_b, rays, cell
             )
             gone += more
             if not whole:
                 return gone, False
-        elif before + 1 > low.shape[1]:
+        elif not has_capacity(rays, cell):
             return gone, False
         else:
-            gone += subtract_interval(count, low, high, cell, k, from_a, from_b)
-        k += 1 + count[cell] - before
+            gone += subtract_interval(rays, cell, k, from_a, from_b)
+        k += 1 + rays.ray[cell, COUNT] - before
     return gone, True
 
 
 @njit(cache=True, nogil=True)
 def _neighbour_material(
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     columns: int,
     row: int,
     end_row: int,
@@ -840,9 +772,9 @@ def _neighbour_material(
     for y in range(max(j - 1, row), min(j + 2, end_row)):
         for x in range(max(i - 1, 0), min(i + 2, columns)):
             cell = y * columns + x
-            for k in range(count[cell]):
-                c, d = max(a, low[cell, k]), min(b, high[cell, k])
-                if d - c > NOISE and high[cell, k] - low[cell, k] > thick:
+            for m in range(rays.ray[cell, FIRST], rays.ray[cell, FIRST] + rays.ray[cell, COUNT]):
+                c, d = max(a, rays.ends[m, 0]), min(b, rays.ends[m, 1])
+                if d - c > NOISE and rays.ends[m, 1] - rays.ends[m, 0] > thick:
                     return 0.5 * (c + d)
     return np.nan
 
@@ -853,9 +785,7 @@ def _may_hide(
     first: int,
     last: int,
     ray: Floats,
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     columns: int,
     row: int,
     end_row: int,
@@ -873,8 +803,8 @@ def _may_hide(
     for y in range(max(j - 1, row), min(j + 2, end_row)):
         for x in range(max(i - 1, 0), min(i + 2, columns)):
             cell = y * columns + x
-            for k in range(count[cell]):
-                a, b = max(box[2], low[cell, k]), min(box[5], high[cell, k])
+            for m in range(rays.ray[cell, FIRST], rays.ray[cell, FIRST] + rays.ray[cell, COUNT]):
+                a, b = max(box[2], rays.ends[m, 0]), min(box[5], rays.ends[m, 1])
                 if b <= a:
                     continue
                 deepest, w = _max_depth_turning(
@@ -895,9 +825,7 @@ def _graze_candidates(
     last: int,
     span: Floats,
     ray: Floats,
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     columns: int,
     row: int,
     end_row: int,
@@ -926,9 +854,7 @@ def _graze_candidates(
             _ray_in_tool_frame(
                 ray, span, origin[0] + (i + 0.5) * pitch, origin[1] + (j + 0.5) * pitch
             )
-            if not _may_hide(
-                arcs, first, last, ray, count, low, high, columns, row, end_row, i, j, pitch, box
-            ):
+            if not _may_hide(arcs, first, last, ray, rays, columns, row, end_row, i, j, pitch, box):
                 continue
             best[:, 3] = 0.0
             for m in range(fine * fine):
@@ -944,9 +870,7 @@ def _graze_candidates(
                 b, _t = _newton_entry(arcs, first, last, np.inf, ray, box[5], box[2])
                 if math.isnan(b) or b <= a:
                     continue
-                w = _neighbour_material(
-                    count, low, high, columns, row, end_row, i, j, a, b, ray[SMALLER]
-                )
+                w = _neighbour_material(rays, columns, row, end_row, i, j, a, b, ray[SMALLER])
                 if not math.isnan(w):
                     deep = _swept_depth(arcs, first, last, np.inf, ray, w)[0] + ray[SMALLER]
                     quarter = 2 * (2 * y // fine) + 2 * x // fine
@@ -982,9 +906,7 @@ def tridexel_cut_tile(
     piece_start: Ints,
     tool: Ints,
     rapid: Bools,
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     columns: int,
     row: int,
     end_row: int,
@@ -1010,9 +932,8 @@ def tridexel_cut_tile(
     what doesn't cut against what stands.
 
     span (s, `SPAN_COLUMNS`) in the bundle's coordinates, span_start (n + 1,); arcs, piece,
-    piece_start, tool (n,) as `Bodies` has them; count (c,), low and high (c, k) the bundle's
-    intervals, the tile's rows from `row` to `end_row`, `columns` cells each; origin (2,) of the
-    cells.
+    piece_start, tool (n,) as `Bodies` has them; rays: the bundle's, with what is free of the tile,
+    whose rows are those from `row` to `end_row`, `columns` cells each; origin (2,) of the cells.
 
     resume (6,): move, span, piece, row and column to begin with, and whether that move has been
     looked at; changed. removed (n,) gets the length (mm) that is gone, depth (n,) and position (n, 3)
@@ -1032,8 +953,10 @@ def tridexel_cut_tile(
     # Range of w that holds the tile's material: what lies outside of it is skipped.
     bottom, top = np.inf, -np.inf
     for cell in range(row * columns, end_row * columns):
-        if count[cell] > 0:
-            bottom, top = min(bottom, low[cell, 0]), max(top, high[cell, count[cell] - 1])
+        if rays.ray[cell, COUNT] > 0:
+            first = rays.ray[cell, FIRST]
+            bottom = min(bottom, rays.ends[first, 0])
+            top = max(top, rays.ends[first + rays.ray[cell, COUNT] - 1, 1])
     v_low, v_high = origin[1] + row * pitch, origin[1] + end_row * pitch
     # Rapids are counted from the first move on, as `grazed` has rows for each.
     rapids = 0
@@ -1056,9 +979,7 @@ def tridexel_cut_tile(
                 a, b = row * columns, end_row * columns
                 corner[0], corner[1] = origin[0], v_low
                 engagement_in_dexels(
-                    count[a:b],
-                    low[a:b],
-                    high[a:b],
+                    Rays(rays.ray[a:b], rays.ends, rays.free),
                     corner,
                     pitch,
                     end_row - row,
@@ -1112,7 +1033,7 @@ def tridexel_cut_tile(
                             max(i0, resume[4]) if resumes and j == resume[3] else i0, i1
                         ):
                             cell = j * columns + i
-                            if _ray_misses(count, low, high, cell, box[2], box[5]):
+                            if ray_misses(rays, cell, box[2], box[5]):
                                 continue
                             u = origin[0] + (i + 0.5) * pitch
                             _ray_in_tool_frame(ray, span[s], u, v)
@@ -1125,9 +1046,7 @@ def tridexel_cut_tile(
                                 span[s],
                                 u,
                                 v,
-                                count,
-                                low,
-                                high,
+                                rays,
                                 cell,
                                 box,
                             )
@@ -1176,17 +1095,19 @@ def tridexel_cut_tile(
                     )
                     for i in range(i0, i1):
                         cell = j * columns + i
-                        if _ray_misses(count, low, high, cell, box[2], box[5]):
+                        if ray_misses(rays, cell, box[2], box[5]):
                             continue
                         u = origin[0] + (i + 0.5) * pitch
                         # Only the deepest of a move is wanted: an interval that cannot be deeper
                         # than what is known is skipped.
                         _ray_in_tool_frame(ray, span[s], u, v)
-                        for k in range(count[cell]):
-                            a, b = max(low[cell, k], box[2]), min(high[cell, k], box[5])
+                        for m in range(
+                            rays.ray[cell, FIRST], rays.ray[cell, FIRST] + rays.ray[cell, COUNT]
+                        ):
+                            a, b = max(rays.ends[m, 0], box[2]), min(rays.ends[m, 1], box[5])
                             best = depth[n] if cuts else body[n]
                             # What is thin is nowhere deeper in a body than it is thick.
-                            thick = high[cell, k] - low[cell, k]
+                            thick = rays.ends[m, 1] - rays.ends[m, 0]
                             if (
                                 b <= a
                                 or thick <= best
@@ -1215,9 +1136,7 @@ def tridexel_cut_tile(
                         end,
                         span[s],
                         ray,
-                        count,
-                        low,
-                        high,
+                        rays,
                         columns,
                         row,
                         end_row,

@@ -23,6 +23,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.verify.kernels.stock.intervals import COUNT, FIRST, Rays
 
 KIND, X0, Y0, X1, Y1, CX, CY, ARC_RADIUS, MX, MY, COS_HALF, START_ANGLE, SWEEP, Z_START, Z_END = (
     range(15)
@@ -150,9 +151,7 @@ def _inside_intervals(
     x: float,
     y: float,
     z: float,
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     origin: Floats,
     cell: float,
     rows: int,
@@ -163,10 +162,11 @@ def _inside_intervals(
     if not (0 <= i < columns and 0 <= j < rows):
         return False
     ray = j * columns + i
-    for k in range(count[ray]):
-        if z < low[ray, k]:
+    at = rays.ray[ray, FIRST]
+    for m in range(at, at + rays.ray[ray, COUNT]):
+        if z < rays.ends[m, 0]:
             return False
-        if z < high[ray, k]:
+        if z < rays.ends[m, 1]:
             return True
     return False
 
@@ -223,9 +223,7 @@ def _pose_and_velocity(
 
 @njit(cache=True, nogil=True)
 def engagement_in_dexels(
-    count: Ints,
-    low: Floats,
-    high: Floats,
+    rays: Rays,
     origin: Floats,
     pitch: float,
     rows: int,
@@ -247,7 +245,7 @@ def engagement_in_dexels(
     """Count the engaged directions around the probes of a feed move with any axis in columns of
     intervals along z, before it cuts.
 
-    count (rays,), low and high (rays, k) sorted intervals of rows x columns rays from origin (2,);
+    rays: sorted intervals of rows x columns rays from origin (2,);
     start, end, axes, centre (3,) and sweep of one row of `Moves`; rings, circle, counted and spans
     as in `engagement_in_zmap`. flute (s, 2): radius and height of the cutter, upwards from the tip, at
     which material beside it is looked for.
@@ -316,7 +314,7 @@ def engagement_in_dexels(
                     x = tip[0] + f * forward[0] + g * across[0] + height * axis[0]
                     y = tip[1] + f * forward[1] + g * across[1] + height * axis[1]
                     z = tip[2] + f * forward[2] + g * across[2] + height * axis[2] + ABOVE
-                    if _inside_intervals(x, y, z, count, low, high, origin, cell, rows, columns):
+                    if _inside_intervals(x, y, z, rays, origin, cell, rows, columns):
                         hits += 1
             if k >= 0:
                 counted[probe, k] += hits
