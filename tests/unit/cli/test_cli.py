@@ -14,7 +14,7 @@ import pytest
 from parts import PARTS, needs_parts
 from trunnion import registry
 from trunnion.cli.main import BAD, CANCELLED, GENERAL, main
-from trunnion.findings import Refused
+from trunnion.findings import BadInput, Refused
 from trunnion.pipeline import Engine, steps
 
 HEAVY = ("OCP", "cadquery", "vtkmodules", "pyvista", "PySide6", "numba", "shapely")
@@ -230,6 +230,26 @@ def test_toolpaths_are_kept_where_the_program_can_not_be_made(
     assert f"plan and toolpaths are kept in {kept}" in capsys.readouterr().err
     session = Engine().open(kept)
     assert session.paths and all(len(p.path) for p in session.paths)
+
+
+def test_why_there_is_no_program_is_said_where_toolpaths_can_not_be_kept_either(
+    capsys: pytest.CaptureFixture[str],
+    sample_part: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stop(*_: object) -> None:
+        raise Refused("the machine can't follow")
+
+    def full(*_: object) -> None:
+        raise BadInput("no space is left")
+
+    monkeypatch.setattr(steps, "prove_session", stop)
+    monkeypatch.setattr(Engine, "save", full)
+    assert main(["program", str(sample_part), "-o", str(tmp_path / "out")]) == BAD
+    said = capsys.readouterr().err
+    assert "the machine can't follow; plan and toolpaths can't be kept in" in said
+    assert "no space is left" in said
 
 
 def test_a_user_folder_that_is_missing_is_refused(

@@ -88,16 +88,24 @@ def _proven(
     options: argparse.Namespace, engine: Engine, session: Session, progress: Progress
 ) -> Session:
     """Return a session with its proof; where that can't be made, or a person stops it, the plan with its toolpaths is kept as a project."""
-    from trunnion.pipeline.writing import name_of
-
     try:
         return engine.run(session, PROVEN, progress)
     except (TrunnionError, KeyboardInterrupt) as reason:
-        kept = options.output / f"{name_of(session, options.name)}{PROJECT_SUFFIX}"
-        options.output.mkdir(parents=True, exist_ok=True)
-        engine.save(session, kept)
-        where = f"plan and toolpaths are kept in {kept}"
+        where = _kept(options, engine, session)
         if isinstance(reason, TrunnionError):
             raise type(reason)(f"{reason}; {where}") from None
         print(f"trunnion: {where}", file=sys.stderr)
         raise
+
+
+def _kept(options: argparse.Namespace, engine: Engine, session: Session) -> str:
+    """Keep a plan with its toolpaths as a project; return where, or why that can't be: it is no reason to lose the one for keeping it."""
+    from trunnion.pipeline.writing import name_of
+
+    kept = options.output / f"{name_of(session, options.name)}{PROJECT_SUFFIX}"
+    try:
+        options.output.mkdir(parents=True, exist_ok=True)
+        engine.save(session, kept)
+    except (TrunnionError, OSError) as reason:
+        return f"plan and toolpaths can't be kept in {kept}: {reason}"
+    return f"plan and toolpaths are kept in {kept}"
