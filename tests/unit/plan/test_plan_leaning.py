@@ -30,6 +30,7 @@ SHAPES = {
     "over": leaning_pockets.mixed_block,
     "bowl": leaning_pockets.bowl_block,
     "hill": leaning_pockets.hill_block,
+    "steep hill": partial(leaning_pockets.hill_block, radius=32.0),
     "sharp bowl": partial(leaning_pockets.bowl_block, fillet=0.0),
 }
 
@@ -173,6 +174,23 @@ def test_a_thinner_cutter_comes_after_a_sharp_end_that_a_falling_floor_keeps_off
     first, rest = (o for o in operations("hill").values() if o.kind == "leaning_side")
     assert rest.choices["surface.earlier"] == first.tool.name
     assert first.tool.corner_radius == 0.0 and rest.tool.diameter < first.tool.diameter
+
+
+def test_rest_layers_go_so_far_down_beside_a_hill_that_no_neck_meets_what_stays() -> None:
+    found = operations("steep hill")
+    rough, rest = (found[f"{k}-pocket-01"].tool for k in ("rough", "rest"))
+    flutes = min(
+        o.tool.flute_length
+        for o in found.values()
+        if o.kind in ("leaning_side", "semi", "curved_floor")
+    )
+
+    def stays(diameter: float) -> float:
+        """Return how high over the walls' foot the gap beside the hill is as wide as a cutter."""
+        end = 0.5 * leaning_pockets.FOOT[0]
+        return math.sqrt(32.0**2 - (end - diameter) ** 2) - math.sqrt(32.0**2 - end**2)
+
+    assert stays(rest.diameter) < flutes < stays(rough.diameter)
 
 
 def test_each_pocket_has_its_own_share_of_a_rib_that_goes_past_several() -> None:

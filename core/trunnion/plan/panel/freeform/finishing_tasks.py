@@ -137,6 +137,7 @@ def side_tasks(
             tool_change(state),
         )
         for n, step in enumerate(steps):
+            known.finishing.setdefault(pocket.feature.id, []).append(step.tool)
             choices: dict[str, Value] = {
                 SCALLOP: settings.scallop,
                 ALLOWANCE: 0.0,
@@ -193,6 +194,7 @@ def _on_curved_floors(
             steps = (*steps, *sharper_steps(state, known, pocket, samples, steps))
         # Semi-finishing makes the load even where the first cutter goes: what that leaves is little, and none of its rests are.
         for n, step in enumerate(steps[:1] if semi else steps):
+            known.finishing.setdefault(pocket.feature.id, []).append(step.tool)
             is_after_layers = semi or step.earlier is not None or settings.semi_allowance <= 0.0
             choices: dict[str, Value] = {
                 SCALLOP: height,

@@ -27,12 +27,14 @@ from trunnion.shop import Stage
 @dataclass(slots=True, kw_only=True)
 class FreeformPlanning:
     """What is known of a setup's freeform pockets while it is planned: their spaces, and the cutters of their sides and curved floors with
-    the samples that these were chosen by, and the ids of those whose overhang rims are cut."""
+    the samples that these were chosen by, all cutters that finish them by surface passes, and the ids of those whose overhang rims are cut.
+    """
 
     curved: SurfaceSpace
     settings: LeaningSettings
     pockets: dict[str, FreeformPocket | None] = field(default_factory=dict)
     cutters: dict[tuple[str, str], tuple[AreaSamples, AreaCutters]] = field(default_factory=dict)
+    finishing: dict[str, list[Tool]] = field(default_factory=dict)
     rims: set[str] = field(default_factory=set)
 
 

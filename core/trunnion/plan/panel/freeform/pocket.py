@@ -41,9 +41,10 @@ class FreeformPocket:
     """A pocket that is more than upright walls round level floors, in the frame of its setup.
 
     `level` are the tags of its level floors, `curved` those of its curved ones, `sides` those of all that stands around and in it, islands'
-    too. `bottom` and `top` are heights, `rim` that of its lowest rim; `mouth` is the plan area that is free just below the rim; `ribs` are
-    the shares of lower ribs' outlines that are beside it, with their heights. `growth` and `hang` are by how much its walls lean away and
-    over at most, in mm a mm of height. `fillet` is the smallest radius at the foot of its sides, 0 where one is sharp.
+    too. `bottom` and `top` are heights, `crest` that of the highest place of its floors, `rim` that of its lowest rim; `mouth` is the plan
+    area that is free just below the rim; `ribs` are the shares of lower ribs' outlines that are beside it, with their heights. `growth` and
+    `hang` are by how much its walls lean away and over at most, in mm a mm of height. `fillet` is the smallest radius at the
+    foot of its sides, 0 where one is sharp.
     """
 
     feature: Feature
@@ -54,6 +55,7 @@ class FreeformPocket:
     tops: tuple[float, ...]
     ribs: tuple[tuple[float, Region], ...]
     bottom: float
+    crest: float
     top: float
     rim: float
     mouth: Region
@@ -79,7 +81,9 @@ class FreeformPocket:
             )
         skin = curved.skin
         heights = [float(space.centre(t)[2]) for t in level]
-        heights += [float(skin.points[skin.triangles[skin.of((t,))], 2].min()) for t in bent]
+        for t in bent:
+            z = skin.points[skin.triangles[skin.of((t,))], 2]
+            heights += [float(z.min()), float(z.max())]
         top = space.top_of(feature)
         lowest = number(feature, "lowest_rim_z")
         rim = min(space.height(lowest), top) if "lowest_rim_z" in feature.sizes else top
@@ -106,6 +110,7 @@ class FreeformPocket:
                 if (own := _beside(space.part.face_outline(frame, t), mouth, past))
             ),
             bottom=min(heights),
+            crest=max(heights),
             top=top,
             rim=rim,
             mouth=mouth,
@@ -121,6 +126,10 @@ class FreeformPocket:
         return union_all([self.mouth, *over]).offset(
             self.growth * max(z - self.rim, 0.0) + tolerance.OFF_PLANE
         )
+
+    def free_at(self, z: float) -> Region:
+        """Return where nothing of the part is at a height or hangs over it, as far as that is the pocket's."""
+        return self.space.free_near(z, self.mouth).intersect(self.limit(z))
 
     def holds(self, samples: AreaSamples) -> AreaSamples:
         """Return the samples that are the pocket's own, what hangs over among them: faces may run on into its neighbours."""
