@@ -40,11 +40,8 @@ def leaning_block(
     return block().cut(space).val().wrapped
 
 
-@cache
-def mixed_block(
-    lean: float = 6.0, over: float = 5.0, depth: float = 12.0, corner: float = 8.0
-) -> Any:
-    """Return a block with a pocket of a wall that leans over its floor (at high x), one that leans away (low x), and two upright ones."""
+def mixed_space(lean: float, over: float, depth: float, corner: float) -> Any:
+    """Return the space of the pocket of `mixed_block`."""
     low = BLOCK[2] - depth
     x0, x1 = 0.5 * (BLOCK[0] - FOOT[0]), 0.5 * (BLOCK[0] + FOOT[0])
     away, hang = (depth * math.tan(math.radians(a)) for a in (lean, over))
@@ -52,7 +49,22 @@ def mixed_block(
     at = (0.0, 0.5 * (BLOCK[1] + FOOT[1]), 0.0)
     space = cq.Workplane("XZ", origin=at).polyline(profile).close().extrude(FOOT[1])
     between = cq.selectors.BoxSelector((0, 0, low + 1.0), (*BLOCK[:2], BLOCK[2] - 1.0))
-    return block().cut(space.edges(between).fillet(corner)).val().wrapped
+    return space.edges(between).fillet(corner)
+
+
+@cache
+def mixed_block(
+    lean: float = 6.0, over: float = 5.0, depth: float = 12.0, corner: float = 8.0
+) -> Any:
+    """Return a block with a pocket of a wall that leans over its floor (at high x), one that leans away (low x), and two upright ones."""
+    return block().cut(mixed_space(lean, over, depth, corner)).val().wrapped
+
+
+def bowl_space(radius: float, depth: float, corner: float) -> Any:
+    """Return the space of the pocket of `bowl_block` without a fillet."""
+    at = (BLOCK[0] / 2, BLOCK[1], BLOCK[2] - depth + radius)
+    round_ = cq.Workplane("XZ", origin=at).circle(radius).extrude(BLOCK[1])
+    return upright_space(corner).intersect(round_)
 
 
 @cache
@@ -60,12 +72,20 @@ def bowl_block(
     radius: float = 160.0, depth: float = 9.0, corner: float = 8.0, fillet: float = 3.0
 ) -> Any:
     """Return a block with a pocket of upright walls over a floor that is part of a cylinder along y, lowest in the middle."""
-    at = (BLOCK[0] / 2, BLOCK[1], BLOCK[2] - depth + radius)
-    round_ = cq.Workplane("XZ", origin=at).circle(radius).extrude(BLOCK[1])
-    space = upright_space(corner).intersect(round_)
+    space = bowl_space(radius, depth, corner)
     if fillet > 0.0:
         space = space.faces("<Z").edges().fillet(fillet)
     return block().cut(space).val().wrapped
+
+
+@cache
+def bowl_beside_overhang_block(rib: float = 1.5) -> Any:
+    """Return a block with the pocket of `mixed_block` and, behind its wall that leans over, that of `bowl_block` without a fillet; the rib
+    between them is `rib` mm thick at its foot."""
+    past = FOOT[0] + rib
+    solid = cq.Workplane("XY").box(BLOCK[0] + past, *BLOCK[1:], centered=False)
+    bowl = bowl_space(160.0, 9.0, 8.0).translate((past, 0.0, 0.0))
+    return solid.cut(mixed_space(6.0, 5.0, 12.0, 8.0)).cut(bowl).val().wrapped
 
 
 @cache

@@ -17,6 +17,8 @@ from trunnion import tolerance
 from trunnion.geometry.plane.region import union_all
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
+from trunnion.plan.contract import DriveNeeds
+from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.panel.feasibility import adjacent, plannable
 from trunnion.plan.panel.freeform.pocket import FreeformPocket
@@ -30,6 +32,7 @@ SHAPES = {
     "over": leaning_pockets.mixed_block,
     "bowl": leaning_pockets.bowl_block,
     "hill": leaning_pockets.hill_block,
+    "bowl beside overhang": leaning_pockets.bowl_beside_overhang_block,
     "steep hill": partial(leaning_pockets.hill_block, radius=32.0),
     "sharp bowl": partial(leaning_pockets.bowl_block, fillet=0.0),
 }
@@ -174,6 +177,30 @@ def test_a_thinner_cutter_comes_after_a_sharp_end_that_a_falling_floor_keeps_off
     first, rest = (o for o in operations("hill").values() if o.kind == "leaning_side")
     assert rest.choices["surface.earlier"] == first.tool.name
     assert first.tool.corner_radius == 0.0 and rest.tool.diameter < first.tool.diameter
+
+
+def test_what_hangs_over_behind_a_rib_keeps_no_cutter_off_the_walls_on_its_other_side() -> None:
+    engine, session = routed("bowl beside overhang")
+    assert session.recognition is not None and session.blank is not None
+    (bowl,) = [
+        f.id for f in session.recognition.of_kind("pocket") if not f.with_role("inner_convergence")
+    ]
+    space = SurfaceSpace.of(
+        engine.context.part,
+        engine.context.skin(tolerance.SKIN_CHORD),
+        session.blank,
+        session.setups[0],
+    )
+    found = [o for o in operations("bowl beside overhang").values() if o.feature == bowl]
+    finishing = [o for o in found if o.kind in ("leaning_side", "semi", "curved_floor")]
+    assert len(finishing) >= 3
+    for operation in finishing:
+        drive = space.drive_of(operation, DriveNeeds(drive=SurfaceDrive))
+        faces = drive.skin.of(drive.faces), space.skin.of(operation.faces)
+        own, whole = (
+            s.areas(f).sum() for s, f in zip((drive.skin, space.skin), faces, strict=True)
+        )
+        assert own == pytest.approx(whole), operation.id
 
 
 def test_rest_layers_go_so_far_down_beside_a_hill_that_no_neck_meets_what_stays() -> None:

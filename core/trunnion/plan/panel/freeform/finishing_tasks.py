@@ -123,8 +123,8 @@ def side_tasks(
         left = pocket.layer_area().remaining(settings.cell, state.settings.floor_allowance)
         left += settings.step
         hanging: dict[str, Value] = {}
-        if pocket.feature.id in known.rims:
-            # Outside of the rims of what leans over nothing stands any more, and no neck comes inside of them.
+        if pocket.feature.id in known.rims or not pocket.near_overhangs:
+            # Outside of the rims of what leans over nothing stands any more, and no neck comes inside of them; nor through a rib.
             hanging = {OVERHANG: 0.0}
         elif pocket.hang > 0.0:
             # What stays at a wall that leans over is nowhere finished: necks keep off more than elsewhere.
@@ -202,6 +202,7 @@ def _on_curved_floors(
                 f"{FLOOR_STRATEGY}.steepest": settings.steep + LAP,
                 **chord_choices(FLOOR_STRATEGY, height),
                 **after_earlier(FLOOR_STRATEGY, step.earlier),
+                **({} if pocket.near_overhangs else {OVERHANG: 0.0}),
             }
             depth = left if is_after_layers else settings.semi_allowance
             found.append(

@@ -44,7 +44,8 @@ class FreeformPocket:
     too. `bottom` and `top` are heights, `crest` that of the highest place of its floors, `rim` that of its lowest rim; `mouth` is the plan
     area that is free just below the rim; `ribs` are the shares of lower ribs' outlines that are beside it, with their heights. `growth` and
     `hang` are by how much its walls lean away and over at most, in mm a mm of height. `fillet` is the smallest radius at the
-    foot of its sides, 0 where one is sharp.
+    foot of its sides, 0 where one is sharp. `near_overhangs`: faces hang over where its cutters go, of its own sides or of a neighbour
+    that it joins over a lower rib; a rib as high as the pocket keeps necks off all that hangs over behind it.
     """
 
     feature: Feature
@@ -62,6 +63,7 @@ class FreeformPocket:
     growth: float
     hang: float
     fillet: float
+    near_overhangs: bool
     _floors: list[tuple[tuple[Floor, ...], tuple[DriveLevel, ...]]] = field(
         init=False, repr=False, default_factory=list
     )
@@ -117,6 +119,7 @@ class FreeformPocket:
             growth=growth,
             hang=hang,
             fillet=min(floor_fillet(f) for f in (feature, *islands)),
+            near_overhangs=_growth(curved, sides, -1.0) > 0.0 or rim < top - tolerance.SEW,
         )
 
     def limit(self, z: float) -> Region:
@@ -226,10 +229,10 @@ def _beside(outline: Region, mouth: Region, past: float) -> Region:
 
 
 def _growth(curved: SurfaceSpace, tags: tuple[int, ...], away: float) -> float:
-    """Return by how much faces lean away (1) or over (-1) at most, in mm a mm of height."""
+    """Return by how much faces lean away (1) or over (-1) at most, in mm a mm of height; 0 where they stand upright to rounding."""
     skin = curved.skin
     normals = skin.normals[np.unique(skin.triangles[skin.of(tags)])]
-    if not len(normals):
+    if not (away * normals[:, 2] > math.sin(tolerance.ANGLE)).any():
         return 0.0
     rise = math.pi / 2.0 - np.arcsin(np.clip(away * normals[:, 2], 0.0, 1.0))
     return float(1.0 / math.tan(max(float(rise.min()), FLATTEST)))
