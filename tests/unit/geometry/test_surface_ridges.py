@@ -181,6 +181,15 @@ def test_what_is_left_of_a_long_wall_is_a_strip_at_its_foot_with_few_triangles(
     assert top[:, :, 2].min() > 3.0 and np.ptp(top[:, :, 0], axis=1).max() > 10.0
 
 
+def test_a_strip_within_large_triangles_that_only_the_next_cutter_comes_to_is_its_area() -> None:
+    # The ball of radius 3 is lifted as far as 3 mm beside the wall, that of radius 1 as far as 1 mm.
+    found, tags = remaining_of(channel(60.0), (1,), BALL, -9.0, HEIGHT, upright=SMALL)
+    strip, around = found.points[found.triangles[found.of(tags)]][:, :, :2], 0.5
+    assert strip[..., 0].min() < 0.1 and strip[..., 0].max() > 59.9
+    assert strip[..., 1].min() < 1.1 and 2.9 < strip[..., 1].max() < 3.0 + around
+    assert found.areas(found.of(tags)).sum() > 60.0 * 2.0
+
+
 def test_what_hangs_over_is_left_to_leaning_tools_alone() -> None:
     roof = grid(
         lambda u, v: np.column_stack([u, v, 9.0 + 0 * u]),

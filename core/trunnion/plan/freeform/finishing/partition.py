@@ -80,6 +80,24 @@ def parted_near(
     return found, tuple(int(t) for t in np.unique(inside.face))
 
 
+def with_shorter_edges(skin: Skin, tags: tuple[int, ...], longest: float) -> Skin:
+    """Return the skin with triangles of faces whose edges are no longer than `longest` mm."""
+    rows = np.flatnonzero(skin.of(tags))
+    corners = skin.points[skin.triangles[rows]]
+    sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+    if not len(rows) or float(sides.max()) <= longest:
+        return skin
+    fine = split_finely(sheet_of(skin, tags), in_mm, longest)
+    kept = np.setdiff1d(np.arange(len(skin.face)), rows)
+    return replace(
+        skin,
+        points=np.concatenate([skin.points, fine.points]),
+        normals=np.concatenate([skin.normals, fine.normals]),
+        triangles=np.concatenate([skin.triangles[kept], fine.triangles + len(skin.points)]),
+        face=np.concatenate([skin.face[kept], fine.face]),
+    )
+
+
 def parted_within(skin: Skin, tags: tuple[int, ...], area: Region) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what of faces lies within a plan area given tags of its own where a face runs out of it, and the tags of
     all that is within."""

@@ -15,7 +15,7 @@ from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side, tip_at
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
-from trunnion.plan.freeform.finishing.partition import parted_near
+from trunnion.plan.freeform.finishing.partition import parted_near, with_shorter_edges
 from trunnion.progress import NO_PROGRESS, Progress
 
 LIFTED = 0.5 * tolerance.GOUGE
@@ -51,6 +51,11 @@ def remaining_of(
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
     in mm that is wanted. Of that another `upright` one gets what it isn't lifted off too, a leaning one (None) what hangs over as well."""
+    if upright is not None:
+        # Beside a wall it gets a strip as wide as their radii differ, which may lie within one triangle of a long face.
+        strip = max(earlier.corner_radius - upright.corner_radius, AROUND)
+        finest = math.sqrt(skin.areas(skin.of(tags)).sum() / MOST)
+        skin = with_shorter_edges(skin, tags, max(strip, finest))
     over = lifted = _lifted_over(
         skin, earlier, lowest, height, np.inf if upright is None else -np.inf, progress
     )
