@@ -76,26 +76,22 @@ def parted_near(
         return skin, ()
     inside, outside = progress.aside(lambda _: _cut(fine, _past_rim(fine, above, around)))
     kept = np.setdiff1d(np.arange(len(face)), near)
-    found = _with_parts(skin, kept, inside, outside)
+    found = _with_parts(skin, kept, (inside, 0), (outside, PART))
     return found, tuple(int(t) for t in np.unique(inside.face))
 
 
-def with_shorter_edges(skin: Skin, tags: tuple[int, ...], longest: float) -> Skin:
+def with_shorter_edges(
+    skin: Skin, tags: tuple[int, ...], longest: float, progress: Progress = NO_PROGRESS
+) -> Skin:
     """Return the skin with triangles of faces whose edges are no longer than `longest` mm."""
     rows = np.flatnonzero(skin.of(tags))
     corners = skin.points[skin.triangles[rows]]
     sides = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
     if not len(rows) or float(sides.max()) <= longest:
         return skin
-    fine = split_finely(sheet_of(skin, tags), in_mm, longest)
-    kept = np.setdiff1d(np.arange(len(skin.face)), rows)
-    return replace(
-        skin,
-        points=np.concatenate([skin.points, fine.points]),
-        normals=np.concatenate([skin.normals, fine.normals]),
-        triangles=np.concatenate([skin.triangles[kept], fine.triangles + len(skin.points)]),
-        face=np.concatenate([skin.face[kept], fine.face]),
-    )
+    whole = sheet_of(skin, tags)
+    fine = progress.aside(lambda own: split_finely(whole, in_mm, longest, own))
+    return _with_parts(skin, np.setdiff1d(np.arange(len(skin.face)), rows), (fine, 0))
 
 
 def parted_within(skin: Skin, tags: tuple[int, ...], area: Region) -> tuple[Skin, tuple[int, ...]]:
@@ -114,7 +110,7 @@ def parted_within(skin: Skin, tags: tuple[int, ...], area: Region) -> tuple[Skin
         sheet_of(replace(skin, face=face), tuple(t + PART for t in some)), in_mm, WITHIN
     )
     inside, beyond = _cut(fine, area.signed_distance(fine.points[:, :2]))
-    found = _with_parts(skin, np.flatnonzero(~mine), inside, beyond)
+    found = _with_parts(skin, np.flatnonzero(~mine), (inside, 0), (beyond, PART))
     parts = tuple(int(t) for t in np.unique(inside.face))
     return found, (*(t for t in tags if t not in some), *parts)
 
@@ -177,15 +173,15 @@ def _lengths(sheet: Sheet) -> Floats:
     return np.asarray(np.linalg.norm(b - a, axis=1))
 
 
-def _with_parts(skin: Skin, kept: Ints, inside: Sheet, outside: Sheet) -> Skin:
-    """Return a skin of the triangles that are kept (k,) and of two sheets, the second one with the tags that its faces had."""
+def _with_parts(skin: Skin, kept: Ints, *parts: tuple[Sheet, int]) -> Skin:
+    """Return a skin of the triangles that are kept (k,) and of sheets, each with what was added to the tags that its faces get back."""
     points, normals, triangles, tag = (
         [skin.points],
         [skin.normals],
         [skin.triangles[kept]],
         [skin.face[kept]],
     )
-    for part, added in ((inside, 0), (outside, PART)):
+    for part, added in parts:
         triangles.append(part.triangles + sum(len(p) for p in points))
         points.append(part.points)
         normals.append(part.normals)

@@ -55,7 +55,7 @@ def remaining_of(
         # Beside a wall it gets a strip as wide as their radii differ, which may lie within one triangle of a long face.
         strip = max(earlier.corner_radius - upright.corner_radius, AROUND)
         finest = math.sqrt(skin.areas(skin.of(tags)).sum() / MOST)
-        skin = with_shorter_edges(skin, tags, max(strip, finest))
+        skin = with_shorter_edges(skin, tags, max(strip, finest), progress)
     over = lifted = _lifted_over(
         skin, earlier, lowest, height, np.inf if upright is None else -np.inf, progress
     )
