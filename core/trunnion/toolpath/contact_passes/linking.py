@@ -38,7 +38,9 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached without lifting."""
 QUARTER = 16
-"""Straight moves in a lead's quarter circle: at 2 mm, 2 um from it."""
+"""Straight moves in a lead's quarter circle where it is lifted over something, and positions at which it is tested: a power of two."""
+LEAD_CHORD = 0.01
+"""mm: the chord error of quarter circles that are not lifted; chords cut their corners on the side away from the face."""
 BETWEEN = 9
 """Positions between two leads that are tested for space."""
 LIFT_STEP = 0.02
@@ -87,16 +89,15 @@ def linked(
     # Order, then leads and links of all passes at once: drops on the skin are cheap only in batches.
     passes = _ordered(passes, parameters, progress.part(0.0, 0.2))
     near = _near(passes, parameters)
-    leads_in, leads_out, has_links = _leads(
-        passes, drive, tool, parameters, progress.part(0.2, 0.4)
-    )
+    leads = _leads(passes, drive, tool, parameters, progress.part(0.2, 0.4))
+    leads_in, leads_out = leads.lead_in, leads.lead_out
     if parameters.arcs:
-        near &= has_links
+        near &= leads.has_links
         chords = [np.array([leads_out[k, -1], leads_in[k + 1, 0]]) for k in np.flatnonzero(near)]
         near[near] = _is_over(chords, drive, tool, parameters, progress.part(0.4, 0.8))
         links = iter(
             [
-                np.vstack([leads_out[k], leads_in[k + 1], passes[k + 1].tip[:1]])
+                np.vstack([leads.off(k), leads.onto(k + 1), passes[k + 1].tip[:1]])
                 for k in np.flatnonzero(near).tolist()
             ]
         )
@@ -111,11 +112,11 @@ def linked(
             blocks.feed(next(links), one.axis[0], Mark.LINK)
         else:
             if k:
-                blocks.feed(leads_out[k - 1], passes[k - 1].axis[-1], Mark.LEAD)
+                blocks.feed(leads.off(k - 1), passes[k - 1].axis[-1], Mark.LEAD)
             blocks.travel(leads_in[k][0], one.axis[0], retract[k - 1] if k else 0.0, approach[k])
-            blocks.feed(np.vstack([leads_in[k][1:], one.tip[:1]]), one.axis[0], Mark.LEAD)
+            blocks.feed(np.vstack([leads.onto(k)[1:], one.tip[:1]]), one.axis[0], Mark.LEAD)
         blocks.feed(one.tip, one.axis, Mark.CUT)
-    blocks.feed(leads_out[-1], passes[-1].axis[-1], Mark.LEAD)
+    blocks.feed(leads.off(len(passes) - 1), passes[-1].axis[-1], Mark.LEAD)
     return blocks.finished(retract[-1])
 
 
@@ -139,6 +140,31 @@ def _retreats(
             axes = np.array([passes[k].axis[of_pass] for k in rows.tolist()])
             found[rows] = parameters.retreats(lead[rows, end], axes)
     return approach.tolist(), retract.tolist()
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Leads:
+    """The leads onto passes, `lead_in` (m, QUARTER, 3), up to their first tips, and off them, `lead_out` (m, QUARTER, 3), after their last.
+
+    `arc_in`, `arc_out` (m,): whether a lead is a quarter circle that nothing lifts; of such only every `stride`-th position is
+    needed. `has_links` (m - 1,): whether the path off a pass and onto the next one needs no lifting, as far as `BETWEEN` positions tell.
+    """
+
+    lead_in: Floats
+    lead_out: Floats
+    arc_in: Bools
+    arc_out: Bools
+    has_links: Bools
+    stride: int
+
+    def onto(self, k: int) -> Floats:
+        """Return the positions (k, 3) of the lead onto a pass, without the pass's own."""
+        return np.asarray(self.lead_in[k][:: self.stride if self.arc_in[k] else 1])
+
+    def off(self, k: int) -> Floats:
+        """Return the positions (k, 3) of the lead off a pass, without the pass's own."""
+        stride = self.stride if self.arc_out[k] else 1
+        return np.asarray(self.lead_out[k][stride - 1 :: stride])
 
 
 class _Blocks:
@@ -488,10 +514,8 @@ def _leads(
     tool: Tool,
     parameters: LinkParameters,
     progress: Progress,
-) -> tuple[Floats, Floats, Bools]:
-    """Return the links (m, k, 3) onto all passes, up to the first tip, and off them, after the last: quarter circles, lifted where they
-    would gouge. Also return for each pass but the last whether the path off it and onto the next one needs no lifting (m - 1,), as far as
-    `BETWEEN` positions tell."""
+) -> _Leads:
+    """Return the leads onto all passes and off them: quarter circles, lifted where they would gouge."""
     lead_in = _arcs(
         np.array([p.tip[0] for p in passes]),
         np.array([_off(p.tip, p.axis[0]) for p in passes]),
@@ -528,10 +552,12 @@ def _leads(
             np.split(lift, np.cumsum([w[..., 0].size for w in links])[:-1]), links, strict=True
         )
     ]
+    is_arc = list[Bools]()
     for arcs, up, is_upright, nearest, row in zip(
         (lead_in, lead_out), lifts, upright, (-1, 0), (0, -1), strict=False
     ):
         arcs[:, :, 2] += np.where(is_upright[:, None], up, 0.0)
+        is_arc.append(~is_upright | (up.max(axis=1) <= 0.0))
         # Lifted unevenly an arc runs along something steep, which its chords would enter: the tool then comes and goes along its axis.
         uneven = is_upright & (
             np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP
@@ -547,16 +573,33 @@ def _leads(
     has_links = (lifts[0][1:].max(axis=1, initial=0.0) <= most) & (
         lifts[1][:-1].max(axis=1, initial=0.0) <= most
     )
-    return (
-        lead_in,
-        lead_out,
-        np.asarray(
+    return _Leads(
+        lead_in=lead_in,
+        lead_out=lead_out,
+        arc_in=is_arc[0],
+        arc_out=is_arc[1],
+        has_links=np.asarray(
             has_links
             & (lifts[2].max(axis=1, initial=0.0) <= most)
             & upright[1, :-1]
             & upright[0, 1:]
         ),
+        stride=_stride(parameters.lead_radius),
     )
+
+
+def _stride(radius: float) -> int:
+    """Return of how many of its `QUARTER` chords a quarter circle of a radius in mm may make one: a power of two, no more than half of all.
+
+    A chord over an angle a is r (1 - cos(a / 2)) from its arc.
+    """
+    stride = 1
+    while (
+        4 * stride <= QUARTER
+        and radius * (1.0 - math.cos(0.5 * math.pi * stride / QUARTER)) <= LEAD_CHORD
+    ):
+        stride *= 2
+    return stride
 
 
 def _off(tip: Floats, axis: Floats) -> Floats:

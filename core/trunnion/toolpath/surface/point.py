@@ -136,7 +136,7 @@ class PointSettings:
         choices=("one", "both"),
     )
     chord: float = setting(
-        0.0005,
+        0.002,
         unit="mm",
         low=0.0001,
         high=0.1,

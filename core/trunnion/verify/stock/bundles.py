@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -88,9 +88,11 @@ class Bundle:
         made._lay_out(intervals, np.full(len(made.tiles()), POOL))
         return made
 
-    def _lay_out(self, intervals: Part, pool: Floats) -> None:
-        """Give every ray rows for its intervals with some to spare, tile by tile; `pool` (tiles,): what is free behind a tile's rays over
-        what they have."""
+    def _lay_out(self, intervals: Part, pool: Floats, most: int | None = None) -> bool:
+        """Give every ray rows for its intervals with some to spare, tile by tile, and return whether that is done.
+
+        It is not where the bundle would take more than `most` bytes. `pool` (tiles,): what is free behind a tile's rays over what they have.
+        """
         count, low, high = intervals
         # Powers of two, as rays take them when they are full.
         capacity = SPARE * 2 ** np.ceil(np.log2(np.maximum(count / SPARE, 1.0))).astype(np.int64)
@@ -100,11 +102,15 @@ class Bundle:
             np.ceil(pool * own).astype(np.int64), 2 * np.maximum.reduceat(capacity, edges)
         )
         ends = np.cumsum(own + free)
+        # Asked before anything is allocated: the old intervals are still there.
+        if most is not None and 8 * (2 * int(ends[-1]) + 3 * len(capacity) + 2 * len(free)) > most:
+            return False
         shift = np.repeat(np.cumsum(free) - free, np.diff(np.append(edges, len(capacity))))
         self.ray = np.column_stack([np.cumsum(capacity) - capacity + shift, count, capacity])
         self.free = np.column_stack([ends - free, ends])
         self.ends = np.zeros((int(ends[-1]), 2))
         self.ends[_in_a_row(self.ray)] = np.column_stack([low, high])
+        return True
 
     @property
     def nbytes(self) -> int:
@@ -173,14 +179,9 @@ class Bundle:
         return self._grown((kept, low[begins], high[ends]), tiles, most)
 
     def _grown(self, intervals: Part, tiles: Collection[int], most: int) -> bool:
-        larger = replace(self)
         pool = np.full(len(self.free), POOL)
         pool[list(tiles)] = 1.0
-        larger._lay_out(intervals, pool)
-        if larger.nbytes > most:
-            return False
-        self.ray, self.ends, self.free = larger.ray, larger.ends, larger.free
-        return True
+        return self._lay_out(intervals, pool, most)
 
     def contains(self, points: Floats) -> Bools:
         """Return for points (k, 3) in the blank's frame whether the nearest ray has material there."""

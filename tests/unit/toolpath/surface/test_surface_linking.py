@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from surface_drives import DATA, driven, grid
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.tolerance import FINISH_GOUGE
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.linking import LEAD_CHORD, LinkParameters, linked
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from verify_tools import bull
 
@@ -48,11 +49,23 @@ def test_a_path_begins_and_ends_at_clearance_and_comes_in_on_a_quarter_circle() 
     assert path.motion[[0, -1]].tolist() == [Motion.RAPID] * 2
     assert path.position[-1] == pytest.approx([26.0, 10.0, setup.clearance])
     leads = path.position[path.mark == Mark.LEAD]
-    ahead = leads[:15]
+    ahead = leads[leads[:, 0] < 5.0]
     # A circle of 1 mm about (5, 10, 1) that ends level, at the pass.
     assert np.hypot(ahead[:, 0] - 5.0, ahead[:, 2] - 1.0) == pytest.approx(np.ones(len(ahead)))
+    middle = 0.5 * (ahead[1:] + ahead[:-1])
+    assert np.hypot(middle[:, 0] - 5.0, middle[:, 2] - 1.0).min() > 1.0 - LEAD_CHORD
     cut = path.position[path.mark == Mark.CUT]
     assert cut[-1] == pytest.approx([25.0, 10.0, 0.0])
+
+
+@pytest.mark.parametrize(("radius", "most"), [(0.3, 4), (1.0, 8), (10.0, 16)])
+def test_small_leads_are_of_few_chords(radius, most) -> None:
+    path, *_ = made([straight((12, 15, 0), (18, 15, 0))], replace(MANNER, lead_radius=radius))
+    lead = path.position[(path.mark == Mark.LEAD) & (path.position[:, 0] > 18.0)]
+    assert len(lead) == most
+    assert lead[-1] == pytest.approx([18.0 + radius, 15.0, radius])
+    between = 0.5 * (lead[1:] + lead[:-1]) - [18.0, 15.0, radius]
+    assert np.linalg.norm(between, axis=1).min() >= radius - max(LEAD_CHORD, 0.0013 * radius)
 
 
 def test_a_pass_that_begins_nearby_is_reached_over_the_surface() -> None:
