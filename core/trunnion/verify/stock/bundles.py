@@ -91,7 +91,7 @@ class Bundle:
     def _lay_out(self, intervals: Part, pool: Floats, most: int | None = None) -> bool:
         """Give every ray rows for its intervals with some to spare, tile by tile, and return whether that is done.
 
-        It is not where the bundle would take more than `most` bytes. `pool` (tiles,): what is free behind a tile's rays over what they have.
+        It is not where the bundle would take more than `most` bytes. `pool` (tiles,): what is free behind a tile's rays over their own.
         """
         count, low, high = intervals
         # Powers of two, as rays take them when they are full.
