@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Refused
-from trunnion.geometry.arrays import Bools, Floats, unit
+from trunnion.geometry.arrays import Bools, Floats, Ints, unit
 from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -41,6 +41,8 @@ QUARTER = 16
 """Straight moves in a lead's quarter circle where it is lifted over something, and positions at which it is tested: a power of two."""
 LEAD_CHORD = 0.01
 """mm: the chord error of quarter circles that are not lifted; chords cut their corners on the side away from the face."""
+SHORTER = (0.4, 0.0)
+"""Shares of the lead radius that are tried one after the other where the tool touches something on a lead."""
 BETWEEN = 9
 """Positions between two leads that are tested for space."""
 LIFT_STEP = 0.02
@@ -58,7 +60,8 @@ class LinkParameters:
     `arcs` a near pass is reached by the leads of both, and above the stock where these have no space: for walls, beside which a cutter that
     follows the surface would be lifted to their tops. Closed passes go on over their start by the `overlap` in mm. `retreats`
     says how far (k,) in mm a tool at tips (k, 3) with axes (k, 3) is fed along them before it goes on at rapid; None: not at all.
-    `query` says which straight moves between near passes of a leaning tool are clear: the others are lifted over."""
+    `query` says which straight moves of a leaning tool are clear: other ones between near passes are lifted over, leads are shorter where
+    these are not."""
 
     stepover: float
     safety: float = 2.0
@@ -146,24 +149,23 @@ def _retreats(
 class _Leads:
     """The leads onto passes, `lead_in` (m, QUARTER, 3), up to their first tips, and off them, `lead_out` (m, QUARTER, 3), after their last.
 
-    `arc_in`, `arc_out` (m,): whether a lead is a quarter circle that nothing lifts; of such only every `stride`-th position is
-    needed. `has_links` (m - 1,): whether the path off a pass and onto the next one needs no lifting, as far as `BETWEEN` positions tell.
+    Every `stride_in`-th (m,), or `stride_out`-th, position is needed: all where a lead is lifted over something. `has_links` (m - 1,):
+    whether the path off a pass and onto the next one needs no lifting, as far as `BETWEEN` positions tell.
     """
 
     lead_in: Floats
     lead_out: Floats
-    arc_in: Bools
-    arc_out: Bools
+    stride_in: Ints
+    stride_out: Ints
     has_links: Bools
-    stride: int
 
     def onto(self, k: int) -> Floats:
         """Return the positions (k, 3) of the lead onto a pass, without the pass's own."""
-        return np.asarray(self.lead_in[k][:: self.stride if self.arc_in[k] else 1])
+        return np.asarray(self.lead_in[k][:: self.stride_in[k]])
 
     def off(self, k: int) -> Floats:
         """Return the positions (k, 3) of the lead off a pass, without the pass's own."""
-        stride = self.stride if self.arc_out[k] else 1
+        stride = int(self.stride_out[k])
         return np.asarray(self.lead_out[k][stride - 1 :: stride])
 
 
@@ -516,20 +518,9 @@ def _leads(
     progress: Progress,
 ) -> _Leads:
     """Return the leads onto all passes and off them: quarter circles, lifted where they would gouge."""
-    lead_in = _arcs(
-        np.array([p.tip[0] for p in passes]),
-        np.array([_off(p.tip, p.axis[0]) for p in passes]),
-        np.array([p.normal[0] for p in passes]),
-        np.array([p.axis[0] for p in passes]),
-        parameters.lead_radius,
-    )[:, ::-1]
-    lead_out = _arcs(
-        np.array([p.tip[-1] for p in passes]),
-        np.array([_off(p.tip[::-1], p.axis[-1]) for p in passes]),
-        np.array([p.normal[-1] for p in passes]),
-        np.array([p.axis[-1] for p in passes]),
-        parameters.lead_radius,
-    )
+    starts, ends = _PassEnds.of(passes, at_end=False), _PassEnds.of(passes, at_end=True)
+    radius_in, radius_out = (e.radii(parameters) for e in (starts, ends))
+    lead_in, lead_out = starts.arcs(radius_in)[:, ::-1], ends.arcs(radius_out)
     upright = np.array([[_is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
     # Drop the cutter at all points of leads and of the chords between them, and lift what would gouge: max(floor + allowance - z, 0).
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
@@ -553,8 +544,8 @@ def _leads(
         )
     ]
     is_arc = list[Bools]()
-    for arcs, up, is_upright, nearest, row in zip(
-        (lead_in, lead_out), lifts, upright, (-1, 0), (0, -1), strict=False
+    for arcs, up, is_upright, nearest, end in zip(
+        (lead_in, lead_out), lifts, upright, (-1, 0), (starts, ends), strict=False
     ):
         arcs[:, :, 2] += np.where(is_upright[:, None], up, 0.0)
         is_arc.append(~is_upright | (up.max(axis=1) <= 0.0))
@@ -562,10 +553,10 @@ def _leads(
         uneven = is_upright & (
             np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP
         )
-        tips = np.array([p.tip[row] for p in passes])[uneven]
         rise = np.arange(1, QUARTER + 1) * (parameters.lead_radius / QUARTER)
         arcs[uneven] = (
-            tips[:, None] + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
+            end.tip[uneven][:, None]
+            + (rise if nearest == 0 else rise[::-1])[None, :, None] * UPRIGHT
         )
     # A link along both arcs holds where neither arc nor the chord between was lifted by more than the chord error, or than a finishing move
     # may enter what it touches: passes may leave their curves by more than that, to both sides of these.
@@ -576,30 +567,69 @@ def _leads(
     return _Leads(
         lead_in=lead_in,
         lead_out=lead_out,
-        arc_in=is_arc[0],
-        arc_out=is_arc[1],
+        stride_in=np.where(is_arc[0], _strides(radius_in), 1),
+        stride_out=np.where(is_arc[1], _strides(radius_out), 1),
         has_links=np.asarray(
             has_links
             & (lifts[2].max(axis=1, initial=0.0) <= most)
             & upright[1, :-1]
             & upright[0, 1:]
         ),
-        stride=_stride(parameters.lead_radius),
     )
 
 
-def _stride(radius: float) -> int:
-    """Return of how many of its `QUARTER` chords a quarter circle of a radius in mm may make one: a power of two, no more than half of all.
+def _strides(radius: Floats) -> Ints:
+    """Return of how many of its `QUARTER` chords each quarter circle of some radii (m,) in mm may make one: powers of two, half of all at
+    most. A chord over an angle a is r (1 - cos(a / 2)) from its arc."""
+    found = np.ones(len(radius), np.int64)
+    for stride in (2**n for n in range(int(math.log2(QUARTER)) - 1)):
+        error = radius * (1.0 - math.cos(0.5 * math.pi * stride / QUARTER))
+        found[(found == stride) & (error <= LEAD_CHORD)] *= 2
+    return found
 
-    A chord over an angle a is r (1 - cos(a / 2)) from its arc.
-    """
-    stride = 1
-    while (
-        4 * stride <= QUARTER
-        and radius * (1.0 - math.cos(0.5 * math.pi * stride / QUARTER)) <= LEAD_CHORD
-    ):
-        stride *= 2
-    return stride
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _PassEnds:
+    """One end of each of some passes: the tip (m, 3) there, `along` (m, 3) on from the pass, the face's normal and the axis (m, 3)."""
+
+    tip: Floats
+    along: Floats
+    normal: Floats
+    axis: Floats
+
+    @staticmethod
+    def of(passes: Sequence[Pass], *, at_end: bool) -> _PassEnds:
+        row, step = (-1, -1) if at_end else (0, 1)
+        return _PassEnds(
+            tip=np.array([p.tip[row] for p in passes]),
+            along=np.array([_off(p.tip[::step], p.axis[row]) for p in passes]),
+            normal=np.array([p.normal[row] for p in passes]),
+            axis=np.array([p.axis[row] for p in passes]),
+        )
+
+    def arcs(self, radius: Floats) -> Floats:
+        """Return the quarter circles (m, QUARTER, 3) of some radii (m,) that leave the passes; without the tips."""
+        return _arcs(self.tip, self.along, self.normal, self.axis, radius[:, None, None])
+
+    def radii(self, parameters: LinkParameters) -> Floats:
+        """Return the radii (m,) in mm of the leads: where the tool would touch something on one it is shorter, or there is none."""
+        radius, query = np.full(len(self.tip), parameters.lead_radius), parameters.query
+        if query is None:
+            return radius
+        touching = np.arange(len(radius))
+        for share in SHORTER:
+            stride = int(_strides(radius[touching[:1]])[0])
+            arcs = self.arcs(radius)[touching, stride - 1 :: stride]
+            start = np.concatenate([self.tip[touching, None], arcs[:, :-1]], axis=1)
+            axis = np.repeat(self.axis[touching], arcs.shape[1], axis=0)
+            is_clear = query(
+                arcs.reshape(-1, 3), axis, start_tip=start.reshape(-1, 3), start_axis=axis
+            )
+            touching = touching[~is_clear.reshape(arcs.shape[:2]).all(axis=1)]
+            if not len(touching):
+                break
+            radius[touching] = share * parameters.lead_radius
+        return radius
 
 
 def _off(tip: Floats, axis: Floats) -> Floats:
@@ -610,9 +640,9 @@ def _off(tip: Floats, axis: Floats) -> Floats:
     return np.asarray(away[moved[0]] if len(moved) else axis)
 
 
-def _arcs(tips: Floats, along: Floats, normals: Floats, axes: Floats, radius: float) -> Floats:
-    """Return quarter circles (m, QUARTER, 3) that leave tips (m, 3) along directions and turn to the side of the normals; without the
-    tips."""
+def _arcs(tips: Floats, along: Floats, normals: Floats, axes: Floats, radius: Floats) -> Floats:
+    """Return quarter circles (m, QUARTER, 3) of radii (m, 1, 1) that leave tips (m, 3) along directions and turn to the side of the
+    normals; without the tips."""
     along = unit(along)
     side = normals - (normals * along).sum(axis=1, keepdims=True) * along
     flat = np.linalg.norm(side, axis=1) < SAME

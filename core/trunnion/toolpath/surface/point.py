@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
 
 import numpy as np
 
@@ -53,8 +52,6 @@ from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import trimmed
 
-LEADS = (1.0, 0.4, 0.0)
-"""Shares of the lead radius that are tried where leads touch something."""
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
 
@@ -317,28 +314,17 @@ def _linked(
     query: ClearanceQuery,
     progress: Progress,
 ) -> tuple[Toolpath, tuple[Finding, ...]]:
-    """Return the path through all passes; leads that touch something are tried shorter, what touches in the end is a finding."""
-    path, has_contact = Toolpath.join([]), np.zeros(0, dtype=bool)
-    for n, share in enumerate(LEADS):
-        path = linked(
-            done.passes,
-            drive,
-            tool,
-            data,
-            stock,
-            setup,
-            replace(parameters, lead_radius=share * parameters.lead_radius),
-            progress.part(n / len(LEADS), (n + 1) / len(LEADS)),
-        )
-        between_cuts = np.flatnonzero(path.mark[1:] != Mark.CUT) + 1
-        has_contact = ~query(
-            path.position[between_cuts],
-            path.axis[between_cuts],
-            start_tip=path.position[between_cuts - 1],
-            start_axis=path.axis[between_cuts - 1],
-        )
-        if not has_contact.any():
-            return path, ()
+    """Return the path through all passes; what touches something between them is a finding."""
+    path = linked(done.passes, drive, tool, data, stock, setup, parameters, progress)
+    between_cuts = np.flatnonzero(path.mark[1:] != Mark.CUT) + 1
+    has_contact = ~query(
+        path.position[between_cuts],
+        path.axis[between_cuts],
+        start_tip=path.position[between_cuts - 1],
+        start_axis=path.axis[between_cuts - 1],
+    )
+    if not has_contact.any():
+        return path, ()
     return path, (
         warning(
             "point.link",

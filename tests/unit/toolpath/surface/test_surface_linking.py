@@ -68,6 +68,25 @@ def test_small_leads_are_of_few_chords(radius, most) -> None:
     assert np.linalg.norm(between, axis=1).min() >= radius - max(LEAD_CHORD, 0.0013 * radius)
 
 
+def test_only_leads_that_touch_something_are_shorter() -> None:
+    """Whatever of a leaning tool's way lies beyond x = 18.5 is not clear."""
+    lean = np.array([math.sin(0.1), 0.0, math.cos(0.1)])
+    ends = (12.0, 18.0, 18.5)
+    passes = [straight((6, 5 + 8 * k, 0), (x, 5 + 8 * k, 0), axis=lean) for k, x in enumerate(ends)]
+
+    def query(tip, axis, *, start_tip=None, start_axis=None):
+        assert np.abs(tip - start_tip).max() < 1.0
+        return np.maximum(tip[:, 0], start_tip[:, 0]) <= 18.5
+
+    path, *_ = made(passes, replace(MANNER, query=query))
+    for k, radius in enumerate((1.0, 0.4, 0.0)):
+        beside = np.abs(path.position[:, 1] - 5.0 - 8.0 * k) < 1e-9
+        lead = path.position[beside & (path.mark == Mark.LEAD) & (path.position[:, 0] > 11.0)]
+        assert lead[:, 0].max(initial=ends[k]) == pytest.approx(ends[k] + radius)
+        first = path.position[beside & (path.mark == Mark.LEAD)][0]
+        assert first[0] == pytest.approx(5.0)
+
+
 def test_a_pass_that_begins_nearby_is_reached_over_the_surface() -> None:
     path, *_ = made([straight((5, 10, 0), (25, 10, 0)), straight((25, 10.5, 0), (5, 10.5, 0))])
     assert (path.motion == Motion.RAPID).sum() == 3
