@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import samples
+from seeded.leaning_panels import leaning_panel
 from seeded.plates import plate
 from trunnion import tolerance
 from trunnion.findings import BadInput
@@ -177,6 +178,14 @@ def test_a_plane_that_leans_meets_circles_whose_farthest_points_lie_below_it() -
     leaning = Frame(np.zeros(3), np.array([0.0, 0.0, 1.0]), out)
     wide = 2.0 * math.sqrt(50.0**2 - 46.0**2)
     assert samples.read(disc).section(leaning, 46.0).area == pytest.approx(5.0 * wide, abs=1e-6)
+
+
+def test_a_narrow_fillet_of_a_wide_rim_is_cut_though_steps_are_longer_than_it_is_round() -> None:
+    # 2 mm round on a rim of 59 mm radius, cut beside its inner edge: a step of 5 mm over it was pulled back to where it began.
+    shape = cq.Shape.cast(leaning_panel(144).shape)
+    slicer = SolidSlicer(shape.wrapped, [face.wrapped for face in shape.Faces()])
+    low, middle, high = (slicer.section(WORLD, 37.755208237 + d).area for d in (-0.01, 0.0, 0.01))
+    assert low > middle > high > 0.99 * low
 
 
 def test_a_curve_that_is_lost_from_one_end_is_found_from_the_other(

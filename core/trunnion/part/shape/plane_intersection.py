@@ -124,14 +124,18 @@ class Tracer:
             after = targets[end][2] if end is not None else self.stepped(uv, _scaled(heading, step))
             there = targets[end][1] if end is not None else self.at(after)[0]
             towards = _scaled(self.direction(after), sense)
-            if not _follows(point, heading, there, towards) and step > self.size * _SHORTEST:
+            moved = math.dist(point, there)
+            # A step far longer than the surface is round is pulled back to where it began.
+            is_good = _follows(point, heading, there, towards) and (
+                end is not None or moved >= 0.01 * step
+            )
+            if not is_good and step > self.size * _SHORTEST:
                 step *= 0.5
                 continue
             points.append(there)
             headings.append(towards)
             if end is not None:
                 return targets[end][0], np.array(points), np.array(headings)
-            moved = math.dist(point, there)
             if moved < 0.01 * step:
                 return None
             travelled += moved
