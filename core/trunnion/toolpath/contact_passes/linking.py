@@ -38,7 +38,8 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached without lifting."""
 QUARTER = 16
-"""Straight moves in a lead's quarter circle where it is lifted over something, and positions at which it is tested: a power of two."""
+"""Straight moves in a lead's quarter circle at most, as many where it is lifted over something, and positions at which it is tested:
+a power of two."""
 LEAD_CHORD = 0.01
 """mm: the chord error of quarter circles that are not lifted; chords cut their corners on the side away from the face."""
 SHORTER = (0.4, 0.0)
@@ -599,6 +600,7 @@ class _PassEnds:
 
     @staticmethod
     def of(passes: Sequence[Pass], *, at_end: bool) -> _PassEnds:
+        """Return the last, or the first, ends of passes."""
         row, step = (-1, -1) if at_end else (0, 1)
         return _PassEnds(
             tip=np.array([p.tip[row] for p in passes]),
