@@ -7,7 +7,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from trunnion.plan.channel.blade_channel import NO_TOE, U_BEYOND, BladeChannel, Camber
 from trunnion.plan.channel.meridian import MeridianSpline, WheelMeridian
-from trunnion.toolpath.contact_passes.sphere_links import SphereLinkParameters
+from trunnion.toolpath.contact_passes.linking.sphere_links import SphereLinkParameters
 from trunnion.toolpath.motion.reorient import ClearanceSphere
 
 SPHERE = ClearanceSphere(centre=np.zeros(3), radius=50.0)

@@ -63,6 +63,17 @@ def test_an_axis_beyond_the_machine_s_limits_is_not_clear_wherever_the_tool_is(b
     assert five(far, SIDE).all() and not five(far, DOWN).any()
 
 
+def test_a_turn_between_two_axes_that_leaves_the_machine_s_limits_is_not_clear(block) -> None:
+    far, lean = block[0].high[None] + 500.0, np.radians(119.0)
+    first = np.array([[np.sin(lean), 0.0, np.cos(lean)]])
+    ask = around(block)(BALL)
+    for aside, clear in ((1.0, True), (90.0, False)):
+        turn = np.radians(aside)
+        last = np.array([[np.sin(lean) * np.cos(turn), np.sin(lean) * np.sin(turn), np.cos(lean)]])
+        assert ask(far, first).all() and ask(far, last).all()
+        assert ask(far, last, start_tip=far, start_axis=first).all() == clear
+
+
 def test_poses_are_given_in_the_cutting_frame(block) -> None:
     turned = Frame(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, -1.0]))
     part = block[0]

@@ -9,9 +9,9 @@ import pytest
 
 from leaning_tools import cutter
 from trunnion.model.motion.toolpath import Mark, Motion
+from trunnion.toolpath.contact_passes.linking.sphere_links import copied, linked_round
 from trunnion.toolpath.contact_passes.open_axes import open_axes
 from trunnion.toolpath.contact_passes.passes import Pass
-from trunnion.toolpath.contact_passes.sphere_links import copied, linked_round
 from wheels import SPHERE, links_round
 
 

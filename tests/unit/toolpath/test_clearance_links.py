@@ -9,7 +9,7 @@ import pytest
 
 from leaning_tools import cutter
 from trunnion.toolpath.contact_passes.blank_clearance import tool_outside
-from trunnion.toolpath.contact_passes.clearance_links import ClearanceLinks
+from trunnion.toolpath.contact_passes.linking.clearance_links import ClearanceLinks
 
 RADIUS, CLEARANCE = 20.0, 2.0
 OUTSIDE = tool_outside(

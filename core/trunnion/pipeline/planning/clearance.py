@@ -6,6 +6,7 @@ operations have no tilted tool.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -17,6 +18,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
+from trunnion.geometry.sphere import angle_between
 from trunnion.model.fixture import Fixture
 from trunnion.model.material import Machine
 from trunnion.model.tool import Tool
@@ -24,6 +26,7 @@ from trunnion.part.shape.facets import Facets
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.threads import in_parallel
 from trunnion.toolpath.contact_passes.axis_search import thickened
+from trunnion.toolpath.contact_passes.contacts import slerp
 
 if TYPE_CHECKING:
     from trunnion.part.part import Part
@@ -32,6 +35,8 @@ if TYPE_CHECKING:
 
 BATCH = 1024
 """Moves between two looks at cancel."""
+HELD = math.radians(2.0)
+"""Largest turn between two axes of a move that the machine is asked to hold."""
 CHUNK = 128
 """Moves that one thread queries before it looks for more."""
 
@@ -128,6 +133,8 @@ class ToolClearanceQuery:
 
         tip, axis = (np.asarray(v, dtype=np.float64).reshape(-1, 3) for v in (tip, axis))
         clear = self._around.holds(axis)
+        if start_tip is not None and start_axis is not None:
+            clear &= self._is_held_between(start_axis, axis)
         rows = np.flatnonzero(clear)
         moves = poses_of(self._tool, tip[rows], axis[rows])
         if start_tip is not None:
@@ -146,3 +153,15 @@ class ToolClearanceQuery:
             )
         clear[rows] = self._around.clear(moves)
         return clear
+
+    def _is_held_between(self, start: Floats, end: Floats) -> Bools:
+        """Return between which axes (k, 3) the machine can hold all on the even turn: it may lean further than both."""
+        turn = angle_between(start, end)
+        held = np.ones(len(end), dtype=bool)
+        between = np.maximum(np.ceil(turn / HELD), 1.0).astype(np.int64) - 1
+        way = np.repeat(np.arange(len(end)), between)
+        number = np.arange(len(way)) - np.repeat(np.cumsum(between) - between, between) + 1
+        if len(way):
+            axes = slerp(start[way], end[way], number / (between[way] + 1.0))
+            held[way[~self._around.holds(axes)]] = False
+        return held

@@ -41,13 +41,13 @@ from trunnion.toolpath.contact_passes.channel_finish import (
 )
 from trunnion.toolpath.contact_passes.channel_lines import between_walls, level_of, lines_between
 from trunnion.toolpath.contact_passes.contacts import Contacts
-from trunnion.toolpath.contact_passes.passes import Pass
-from trunnion.toolpath.contact_passes.sphere_links import (
+from trunnion.toolpath.contact_passes.linking.sphere_links import (
     SphereLinkParameters,
     copied,
     linked_round,
     straight_links,
 )
+from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.stock_clearance import grown
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
 from trunnion.toolpath.motion.reorient import clearance_sphere

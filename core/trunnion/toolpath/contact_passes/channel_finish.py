@@ -19,16 +19,16 @@ from trunnion.plan.clearance import ClearanceQuery
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.axis_search import LeanLimits, thickened
 from trunnion.toolpath.contact_passes.blank_clearance import body_outside, tool_outside
-from trunnion.toolpath.contact_passes.clearance_links import ClearanceLinks
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.leaning_passes import PointMilledPasses, milled
-from trunnion.toolpath.contact_passes.open_axes import open_axes
-from trunnion.toolpath.contact_passes.sphere_links import (
+from trunnion.toolpath.contact_passes.linking.clearance_links import ClearanceLinks
+from trunnion.toolpath.contact_passes.linking.sphere_links import (
     Retreat,
     SphereLinkParameters,
     copied,
     linked_round,
 )
+from trunnion.toolpath.contact_passes.open_axes import open_axes
 from trunnion.toolpath.contact_passes.stock_clearance import LEAST_STOCK
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.motion.reorient import clearance_sphere

@@ -6,30 +6,36 @@ known by positions (`plan.clearance.RemainingStockQuery`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sheet.skin import Skin
+from trunnion.geometry.sphere import angle_between
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.reach import AreaSamples, samples_on
 from trunnion.toolpath.contact_passes.axis_search import thickened
+from trunnion.toolpath.contact_passes.contacts import slerp
 
 STOCK_SHARE, LEAST_STOCK = 2.0, 1.0
 """How much material near the part tools are kept clear of where there is space: times the depth of cut, and mm at least. Earlier cutters
 leave more in corners than on faces."""
 EACH, MOST = 0.5, 60_000
 """mm2 of the part for each of the samples that say how far stock is off it, and the most of them."""
+PIECE = math.radians(10.0)
+"""Largest turn of the axis in one piece of a rapid's way."""
 LIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 """mm along its axis that a tool is moved off at feed until a rapid touches nothing: the first of them that does, or the last."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class StockClearance:
     """Queries of one tool among stock: up to a `thickness` (mm) it may stand anywhere on the part, `beyond` is what is known to stand
     farther off."""
@@ -101,22 +107,73 @@ class StockClearance:
     def retreats(self, tip: Floats, axis: Floats) -> Floats:
         """Return how far (k,) in mm a tool at tips (k, 3) goes out along its axes (k, 3) before the rest of the way is clear of everything:
         the first of `LIFTS` that is, or the last. Asked for all together: one pose alone costs nearly as much as a hundred."""
-        assert self.drive.query_for is not None
         tip, axis = (np.asarray(v, dtype=np.float64).reshape(-1, 3) for v in (tip, axis))
-        query = self.drive.query_for(grown(self.tool, self.thickness))
-        body = _whole_body(self.tool, self.thickness)
         found, rows = np.full(len(tip), LIFTS[-1]), np.arange(len(tip))
         # Its body is nowhere slimmer than below: once it is clear it stays so.
         for lift in LIFTS[:-1]:
             axes = axis[rows]
             tips = tip[rows] + lift * axes
-            clear = query(tips - self.thickness * axes, axes)
+            clear = self._grown_query(tips - self.thickness * axes, axes)
             if self.beyond is not None:
-                clear &= self.beyond.is_free(body, tips, axes)
+                clear &= self.beyond.is_free(self._body, tips, axes)
             found[rows[clear]], rows = lift, rows[~clear]
             if not len(rows):
                 break
         return found
+
+    def is_free_between(
+        self, start_tip: Floats, start_axis: Floats, tip: Floats, axis: Floats
+    ) -> Bools:
+        """Return which rapids (k,) from tips (k, 3) with axes (k, 3) to others keep the thickness off everything all along: the tip goes
+        straight, the axis turns evenly."""
+        rapids = _Rapids(start_tip, start_axis, tip, axis)
+        way, tips, axes = rapids.poses(np.maximum(np.ceil(rapids.turn / PIECE), 1.0))
+        # A grown tool's tip is lower by the thickness; within a piece that goes straight too, or nearly so.
+        low, first = tips - self.thickness * axes, np.flatnonzero(np.diff(way) == 0)
+        is_free = self._grown_query(
+            low[first + 1], axes[first + 1], start_tip=low[first], start_axis=axes[first]
+        )
+        clear = np.ones(len(tip), dtype=bool)
+        clear[way[first[~is_free]]] = False
+        if self.beyond is not None and not self.beyond.is_empty and clear.any():
+            # The body is thicker by the thickness: no position of it may go twice as far unseen.
+            rows = np.flatnonzero(clear)
+            moved = rapids.travel[rows] + self.tool.gauge_length * rapids.turn[rows]
+            way, tips, axes = rapids.of(rows).poses(np.ceil(moved / (2.0 * self.thickness)))
+            clear[rows[way[~self.beyond.is_free(self._body, tips, axes)]]] = False
+        return clear
+
+    @cached_property
+    def _grown_query(self) -> ClearanceQuery:
+        assert self.drive.query_for is not None
+        return self.drive.query_for(grown(self.tool, self.thickness))
+
+    @cached_property
+    def _body(self) -> Sequence[tuple[float, float, float, float]]:
+        return _whole_body(self.tool, self.thickness)
+
+
+class _Rapids:
+    """Straight ways of tips (k, 3) whose axes (k, 3) turn evenly: how far they `travel`, mm, and `turn`, rad (k,)."""
+
+    def __init__(self, start_tip: Floats, start_axis: Floats, tip: Floats, axis: Floats) -> None:
+        self._ends = (start_tip, start_axis, tip, axis)
+        self.travel = np.linalg.norm(tip - start_tip, axis=1)
+        self.turn = angle_between(start_axis, axis)
+
+    def of(self, rows: Ints) -> _Rapids:
+        """Return some of the rapids."""
+        return _Rapids(*(v[rows] for v in self._ends))
+
+    def poses(self, pieces: Floats) -> tuple[Ints, Floats, Floats]:
+        """Return the poses that part each way in so many equal pieces (k,), its ends among them: its number (p,), tips and axes (p, 3)."""
+        count = pieces.astype(np.int64) + 1
+        way = np.repeat(np.arange(len(count)), count)
+        number = np.arange(len(way)) - np.repeat(np.cumsum(count) - count, count)
+        share = number / np.maximum(count - 1, 1)[way]
+        start_tip, start_axis, tip, axis = (v[way] for v in self._ends)
+        tips = start_tip + share[:, None] * (tip - start_tip)
+        return way, tips, slerp(start_axis, axis, share)
 
 
 def grown(tool: Tool, thickness: float) -> Tool:

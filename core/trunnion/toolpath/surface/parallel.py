@@ -28,7 +28,8 @@ from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.axis_search import leaned_by
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.overrun import OverrunStrip
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import (

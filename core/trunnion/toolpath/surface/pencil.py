@@ -24,7 +24,8 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import slopes_of
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread

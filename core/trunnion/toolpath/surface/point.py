@@ -40,7 +40,8 @@ from trunnion.toolpath.contact_passes.leaning_passes import (
     milled,
     rest_of,
 )
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.stepover.fronts import scallop_passes
 from trunnion.toolpath.contact_passes.stock_clearance import (
     LEAST_STOCK,
@@ -241,8 +242,10 @@ def point(
         stepover=stepover,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
-        retreats=around.retreats,
+        order="shorter",
+        turn=limits.turn,
         query=query,
+        link_clearance=around,
     )
     path, met = _linked(
         done, drive, tool, data, stock, setup, parameters, query, progress.part(0.9, 1.0)

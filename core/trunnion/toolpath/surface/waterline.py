@@ -25,7 +25,8 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,

@@ -12,7 +12,9 @@ from surface_drives import DATA, driven, grid
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.tolerance import FINISH_GOUGE
-from trunnion.toolpath.contact_passes.linking import LEAD_CHORD, LinkParameters, linked
+from trunnion.toolpath.contact_passes.linking.leads import LEAD_CHORD
+from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from verify_tools import bull
 

@@ -16,7 +16,8 @@ from trunnion.model.blank import Box
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.model.setup import Setup
 from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, remaining_upright, without_met
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stock_clearance import StockClearance, grown
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -176,6 +177,16 @@ def test_a_grown_tool_is_nowhere_slimmer_than_below():
     assert radii[0] == min(radii)
 
 
+class NoAir:
+    """No rapid between two passes is clear; the tool is fed out by 4 mm."""
+
+    def retreats(self, tip, axis):
+        return np.full(len(tip), 4.0)
+
+    def is_free_between(self, start_tip, start_axis, tip, axis):
+        return np.zeros(len(tip), dtype=bool)
+
+
 def test_a_leaning_tool_is_fed_off_and_onto_its_passes_as_far_as_demanded():
     drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=4))
     passes = [straight((5, 5, 0), (25, 5, 0), LEANING), straight((5, 20, 0), (25, 20, 0), LEANING)]
@@ -186,7 +197,7 @@ def test_a_leaning_tool_is_fed_off_and_onto_its_passes_as_far_as_demanded():
         DATA,
         stock,
         setup,
-        replace(MANNER, retreats=lambda tip, axis: np.full(len(tip), 4.0)),
+        replace(MANNER, link_clearance=NoAir()),
     )
     rapid = np.flatnonzero(path.motion == Motion.RAPID)
     before = rapid[rapid > 0] - 1

@@ -11,7 +11,8 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import Progress
-from trunnion.toolpath.contact_passes.linking import LinkParameters, linked
+from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.upright.fixed_axis import UprightPasses
 from trunnion.toolpath.contract import Planned

@@ -18,7 +18,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.plan.clearance import ClearanceQuery
-from trunnion.toolpath.contact_passes.clearance_links import ClearanceLink, ClearanceLinks
+from trunnion.toolpath.contact_passes.linking.clearance_links import ClearanceLink, ClearanceLinks
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.motion.reorient import ClearanceSphere, turn
 
