@@ -9,12 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
-
-import numpy as np
 
 from trunnion import registry, tolerance
-from trunnion.findings import BadCall, Finding, Refused
+from trunnion.findings import BadCall, Finding
 from trunnion.geometry.frame import Frame
 from trunnion.model.material import Material
 from trunnion.model.motion.toolpath import Motion, Toolpath
@@ -22,21 +19,14 @@ from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
+from trunnion.pipeline.operation_path import turned
+from trunnion.pipeline.path_jobs import PathJobs
 from trunnion.pipeline.planning.scene import SessionContext, SetupScene
-from trunnion.pipeline.turning import empty_path, refused, turned_path
-from trunnion.plan.contract import DriveNeeds, Planner, ToolAxis, planner_for
-from trunnion.plan.turning.drive import RevolvedDrive
+from trunnion.plan.contract import planner_for
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
-from trunnion.settings import checked, choose, digest
-from trunnion.toolpath.motion.ground_links import over_ground
 from trunnion.toolpath.motion.load import LoadStock, PathLoad
-from trunnion.toolpath.motion.reorient import clearance_sphere, led_away, moved_over
-from trunnion.toolpath.motion.rolled import laid_flat, rolled
 from trunnion.toolpath.stock.views import StockViews
-
-DRIVEN = 0.2
-"""Share of an operation's progress for the geometry that drives it."""
 
 
 def strategy_settings() -> tuple[type, ...]:
@@ -55,7 +45,7 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
     total = sum(len(session.process.of_setup(setup.name)) for setup in session.setups)
     # What one setup leaves is the next one's stock, whatever side it looks from; what turning leaves is a blank of its own.
     blank = session.blank
-    stock = StockViews(blank)
+    stock, done = StockViews(blank), 0
     with progress.in_turn() as beside:
         for setup in session.setups:
             scene = SetupScene(
@@ -68,17 +58,31 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
                 handed_on=stock,
             )
             loaded = LoadStock(blank, setup.frame)
-            for operation in session.process.of_setup(setup.name):
-                begin, end = (len(laid) + n for n in (0, 1))
-                text = f"toolpath of {operation.id}"
-                progress.at(begin / total, text)
-                here = progress.part(begin / total, end / total, text)
-                made = _make_one(session, planner, scene, operation, here)
+            operations = session.process.of_setup(setup.name)
+
+            def taken(
+                operation: Operation,
+                made: OperationPath,
+                frame: Frame = setup.frame,
+                loaded: LoadStock = loaded,
+            ) -> None:
                 # No path depends on the load of another: it is measured while the next path is laid.
-                loads.append(
-                    beside(partial(_load, made.path, setup.frame, operation, loaded, material))
-                )
+                loads.append(beside(partial(_load, made.path, frame, operation, loaded, material)))
                 laid.append(made)
+
+            def idle() -> None:
+                for load in loads[-1:]:
+                    load()
+
+            with PathJobs(session, planner, scene, taken, idle) as queue:
+                for n, operation in enumerate(operations):
+                    text = f"toolpath of {operation.id}"
+                    here = progress.part((done + n) / total, (done + n + 1) / total, text)
+                    here.at(0.0)
+                    more = n + 1 < len(operations) and queue.leans(operations[n + 1])
+                    queue.add(operation, here, more=more)
+                queue.take_over()
+            done += len(operations)
             if scene.blank is not blank:
                 blank = scene.blank
                 stock = StockViews(blank)
@@ -107,93 +111,6 @@ def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
     )
 
 
-def _make_one(
-    session: Session, planner: Planner, scene: SetupScene, operation: Operation, progress: Progress
-) -> OperationPath:
-    strategy = registry.get(STRATEGIES, operation.strategy)
-    if strategy.drive is RevolvedDrive:
-        return turned_path(session, planner, scene, operation, progress)
-    cutter = operation.cutter
-    settings = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
-    needs = DriveNeeds(
-        drive=strategy.drive,
-        leans=strategy.tool_axis(settings) is ToolAxis.LEANING,
-        finds_rest=strategy.finds_rest,
-        past=strategy.goes_past(settings),
-    )
-    try:
-        driven = planner.drive(operation, needs, scene, progress.part(0.0, DRIVEN))
-        setup, drive, rolling = driven.setup, driven.drive, driven.rolling
-        stock = (
-            scene.sides.over_ground(rolling) if rolling else scene.sides.seen(setup, driven.cell)
-        )
-        before = scene.before(cutter)
-        key = digest(
-            operation.strategy,
-            driven.identity,
-            operation.tool,
-            operation.data,
-            settings,
-            stock.digest,
-            setup,
-            before,
-        )
-        kept = session.path_of(operation.id)
-        if drive.is_empty:
-            kept = empty_path(operation, key)
-        if kept is None or kept.key != key:
-            planned: Any = strategy(
-                drive,
-                cutter,
-                operation.data,
-                stock,
-                setup,
-                settings,
-                progress.part(DRIVEN, 1.0),
-            )
-            sphere = clearance_sphere(scene.blank, scene.setup)
-            own = scene.setup.frame
-            path = (
-                rolled(
-                    over_ground(planned.path, rolling, setup.clearance),
-                    rolling.development,
-                    own,
-                    rolling.chord,
-                )
-                if rolling
-                else turned(planned.path, setup.frame, own)
-            )
-            path = led_away(moved_over(path, before, sphere), sphere)
-            kept = OperationPath(
-                operation=operation.id, path=path, findings=tuple(planned.findings), key=key
-            )
-        if driven.findings:
-            kept = replace(kept, findings=_with(driven.findings, kept.findings))
-    except Refused as reason:
-        return refused(operation, reason)
-    if len(kept.path) and rolling is not None:
-        flat = laid_flat(kept.path, rolling.development, scene.setup.frame)
-        scene.sides.cut_over(rolling, flat, cutter, progress.part(1.0, 1.0))
-        scene.last, scene.tool = kept, cutter
-    elif len(kept.path):
-        scene.sides.cut(
-            setup,
-            turned(kept.path, scene.setup.frame, setup.frame),
-            cutter,
-            progress.part(1.0, 1.0),
-        )
-        scene.last, scene.tool = kept, cutter
-    if len(kept.path):
-        scene.laid.append((cutter, kept))
-    return kept
-
-
-def _with(first: Sequence[Finding], others: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return findings once each: those of a path that was kept hold those of its drive already."""
-    codes = {f.code for f in first}
-    return (*first, *(f for f in others if f.code not in codes))
-
-
 def _load(
     path: Toolpath,
     frame: Frame,
@@ -218,18 +135,3 @@ def _with_load(laid: OperationPath, load: PathLoad | None) -> OperationPath:
     if (power, rate, chip) == (laid.power, laid.rate, laid.chip):
         return laid
     return replace(laid, power=power, rate=rate, chip=chip)
-
-
-def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:
-    """Return a path given in one frame in another one."""
-    if frame is other or not len(path):
-        return path
-    arcs = np.isfinite(path.centre).all(axis=1)
-    centre = path.centre.copy()
-    centre[arcs] = other.to_local(frame.to_world(path.centre[arcs]))
-    return replace(
-        path,
-        position=other.to_local(frame.to_world(path.position)),
-        centre=centre,
-        axis=other.local_direction(frame.world_direction(path.axis)),
-    )

@@ -7,7 +7,7 @@ use any strategy: it makes the drive geometry that the strategy declares.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
@@ -108,7 +108,7 @@ class DriveNeeds:
 
 
 class Scene(Protocol):
-    """What the operations of one setup are made in; `laid` are the cutters and toolpaths, in the setup's frame, of those before."""
+    """What the operations of one setup are made in."""
 
     context: PartContext
     recognition: Recognition
@@ -116,7 +116,10 @@ class Scene(Protocol):
     setup: Setup
     process: ProcessTree
     fixtures: tuple[Fixture, ...]
-    laid: list[tuple[Tool, OperationPath]]
+
+    @property
+    def laid(self) -> Sequence[tuple[Tool, OperationPath]]:
+        """The cutters and toolpaths, in the setup's frame, of the operations that cut before."""
 
     def stock(self, setup: Setup) -> StockHeights:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""

@@ -22,7 +22,7 @@ from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.part.shape.skin import skin_of
-from trunnion.pipeline.toolpaths import turned
+from trunnion.pipeline.operation_path import turned
 from trunnion.plan.freeform.finishing.areas import (
     areas_of,
     blank_faces,

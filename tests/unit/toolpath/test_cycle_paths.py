@@ -17,8 +17,8 @@ from trunnion.model.motion.listing import listing
 from trunnion.model.motion.program import Program
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.session import Session
+from trunnion.pipeline.operation_path import turned
 from trunnion.pipeline.proof.playback import timeline_of
-from trunnion.pipeline.toolpaths import turned
 from trunnion.shop import load_shop
 from trunnion.store.mapping import Members, from_xml, to_xml
 from trunnion.toolpath.motion.time import machining_time

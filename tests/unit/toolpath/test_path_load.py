@@ -39,7 +39,7 @@ def load(*paths: Toolpath) -> PathLoad:
 
 
 def _in(stock: LoadStock, made: Toolpath) -> Toolpath:
-    from trunnion.pipeline.toolpaths import turned
+    from trunnion.pipeline.operation_path import turned
 
     return turned(made, WORLD, stock.frame)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -66,8 +66,7 @@ class SessionContext:
 
 @dataclass(slots=True, kw_only=True)
 class SetupScene:
-    """What the operations of one setup are made in: the part, the stock that is left, and the last path with its tool. `laid` are the
-    cutters and toolpaths, in the setup's frame, of all operations that cut before.
+    """What the operations of one setup are made in: the part, the stock that is left, and the last path with its tool.
 
     `handed_on` is the stock that the setups before have left; without it the blank is uncut. The setup is held by its fixtures
     (`plan.setups.held`).
@@ -83,12 +82,26 @@ class SetupScene:
     sides: StockViews = field(init=False)
     last: OperationPath | None = None
     tool: Tool | None = None
-    laid: list[tuple[Tool, OperationPath]] = field(default_factory=list)
+    before_laid: Callable[[], None] | None = None
+    """Called before anybody looks at `laid`: some paths may still be made."""
+    _laid: list[tuple[Tool, OperationPath]] = field(default_factory=list)
     _made: dict[Hashable, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.setup = held(self.setup, self.fixtures, self.blank)
         self.sides = StockViews(self.blank) if self.handed_on is None else self.handed_on
+
+    @property
+    def laid(self) -> Sequence[tuple[Tool, OperationPath]]:
+        """The cutters and toolpaths, in the setup's frame, of all operations that cut before."""
+        if self.before_laid is not None:
+            self.before_laid()
+        return self._laid
+
+    def leave(self, tool: Tool, path: OperationPath) -> None:
+        """Remember a tool and its path, at whose end it is left."""
+        self.last, self.tool = path, tool
+        self._laid.append((tool, path))
 
     def stock(self, setup: Setup) -> PlanningStock:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""

@@ -107,13 +107,15 @@ class StockViews:
 
     def cut(
         self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS
-    ) -> None:
-        """Take a path in the frame of a setup off its stock. A leaning tool takes nothing off: the stock is then higher than it is."""
-        if len(path) and bool(
-            (path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC).all()
-        ):
-            name = digest(setup.frame)
-            self._stocks[name] = self._stocks[name].after(path, tool, progress)
+    ) -> bool:
+        """Take a path in the frame of a setup off its stock; return whether anything was. A leaning tool takes nothing off: the stock is
+        then higher than it is."""
+        upright = path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC
+        if not len(path) or not upright.all():
+            return False
+        name = digest(setup.frame)
+        self._stocks[name] = self._stocks[name].after(path, tool, progress)
+        return True
 
 
 def _lowered(

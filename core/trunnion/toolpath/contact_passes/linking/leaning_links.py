@@ -17,6 +17,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.motion.toolpath import Mark
+from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.linking.leads import Leads
@@ -79,19 +80,23 @@ class LeaningLinks:
         pairs = zip(self.end_axis, self.start_axis, strict=True)
         return np.flatnonzero([not (is_upright(a) and is_upright(b)) for a, b in pairs])
 
-    def near(self, parameters: LinkParameters) -> dict[int, Link]:
+    def near(self, tool: Tool, parameters: LinkParameters) -> dict[int, Link]:
         """Return the links of pairs that are near each other: straight over the surface where the axis turns little enough, else by the
-        leads of both."""
+        leads of both, up to the tool's radius."""
         query = parameters.query
         if query is None:
             return {}
         away = np.linalg.norm(self.start - self.end, axis=1)
         turn = angle_between(self.end_axis, self.start_axis)
         rows = self.leaning
-        rows = rows[away[rows] <= NEAR * parameters.stepover]
-        slow = rows[turn[rows] <= parameters.turn * away[rows] + tolerance.PARAMETRIC]
+        near = away <= NEAR * parameters.stepover
+        slow = rows[
+            near[rows] & (turn[rows] <= parameters.turn * away[rows] + tolerance.PARAMETRIC)
+        ]
         straight = slow[self._is_clear(slow, self.end, self.start, query)]
-        rows = rows[~np.isin(rows, straight) & (turn[rows] <= MOST_TURN)]
+        near |= away <= tool.radius
+        rows = rows[near[rows] & (turn[rows] <= MOST_TURN)]
+        rows = rows[~np.isin(rows, straight)]
         # A tool that turns where it touches the face would leave a mark: leads that have no radius are none.
         rows = rows[(self._lengths_of_leads(rows) > tolerance.SHORT_MOVE).all(axis=1)]
         led = rows[self._is_clear(rows, self.lead_end, self.lead_start, query)]

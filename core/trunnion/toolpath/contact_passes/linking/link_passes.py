@@ -51,7 +51,7 @@ def linked(
     leads = leads_of(passes, drive, tool, parameters, progress.part(0.2, 0.4))
     links = _surface_links(passes, leads, drive, tool, parameters, progress.part(0.4, 0.8))
     leaning = LeaningLinks.of(passes, leads)
-    links |= leaning.near(parameters)
+    links |= leaning.near(tool, parameters)
     far = np.ones(len(passes) - 1, dtype=bool)
     far[list(links)] = False
     approach, retract = _retreats(passes, far, leads, parameters, progress)

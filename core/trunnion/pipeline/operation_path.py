@@ -1,0 +1,168 @@
+"""The toolpath of one operation that mills: what it depends on, the strategy's path, and what the setup gets of both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from trunnion import registry
+from trunnion.findings import Finding
+from trunnion.geometry.frame import Frame
+from trunnion.model.motion.toolpath import Toolpath
+from trunnion.model.operation import Operation, OperationPath
+from trunnion.model.session import Session
+from trunnion.pipeline.planning.scene import SetupScene
+from trunnion.pipeline.turning import empty_path
+from trunnion.plan.contract import DriveNeeds, OperationDrive, Planner, ToolAxis
+from trunnion.progress import Progress
+from trunnion.registry import STRATEGIES
+from trunnion.settings import checked, choose, digest
+from trunnion.toolpath.contract import Planned
+from trunnion.toolpath.motion.ground_links import over_ground
+from trunnion.toolpath.motion.reorient import clearance_sphere, led_away, moved_over
+from trunnion.toolpath.motion.rolled import laid_flat, rolled
+from trunnion.toolpath.stock.heightfield import PlanningStock
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class PathJob:
+    """An operation with all that its toolpath depends on but the pose that its tool is left in before."""
+
+    operation: Operation
+    settings: Any
+    driven: OperationDrive
+    stock: PlanningStock
+    scene: SetupScene
+
+    @staticmethod
+    def of(
+        session: Session,
+        planner: Planner,
+        scene: SetupScene,
+        operation: Operation,
+        progress: Progress,
+    ) -> PathJob:
+        """Return an operation with its drive and the stock at this moment; raise `Refused` where the part does not bear its feature out."""
+        strategy = registry.get(STRATEGIES, operation.strategy)
+        settings = checked(choose(strategy.settings, {**session.choices, **operation.choices}))
+        needs = DriveNeeds(
+            drive=strategy.drive,
+            leans=strategy.tool_axis(settings) is ToolAxis.LEANING,
+            finds_rest=strategy.finds_rest,
+            past=strategy.goes_past(settings),
+        )
+        driven = planner.drive(operation, needs, scene, progress)
+        rolling, sides = driven.rolling, scene.sides
+        stock = sides.over_ground(rolling) if rolling else sides.seen(driven.setup, driven.cell)
+        return PathJob(
+            operation=operation, settings=settings, driven=driven, stock=stock, scene=scene
+        )
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to cut."""
+        return self.driven.drive.is_empty
+
+    def kept(self, session: Session) -> OperationPath | None:
+        """Return the toolpath that a session has, where all it depends on is the same; or the empty one of what finds nothing to cut."""
+        key = self._key()
+        if self.is_empty:
+            return self._with_drive_findings(empty_path(self.operation, key))
+        kept = session.path_of(self.operation.id)
+        return self._with_drive_findings(kept) if kept is not None and kept.key == key else None
+
+    def planned(self, progress: Progress) -> Planned:
+        """Return the strategy's path in the cutting frame; raise `Refused` where it finds none."""
+        operation, driven = self.operation, self.driven
+        made: Planned = registry.get(STRATEGIES, operation.strategy)(
+            driven.drive,
+            operation.cutter,
+            operation.data,
+            self.stock,
+            driven.setup,
+            self.settings,
+            progress,
+        )
+        return made
+
+    def path(self, planned: Planned) -> OperationPath:
+        """Return the toolpath in the setup's frame, led on from where the tool is now."""
+        driven, scene = self.driven, self.scene
+        sphere = clearance_sphere(scene.blank, scene.setup)
+        own, rolling = scene.setup.frame, driven.rolling
+        path = (
+            rolled(
+                over_ground(planned.path, rolling, driven.setup.clearance),
+                rolling.development,
+                own,
+                rolling.chord,
+            )
+            if rolling
+            else turned(planned.path, driven.setup.frame, own)
+        )
+        path = led_away(moved_over(path, scene.before(self.operation.cutter), sphere), sphere)
+        return self._with_drive_findings(
+            OperationPath(
+                operation=self.operation.id,
+                path=path,
+                findings=tuple(planned.findings),
+                key=self._key(),
+            )
+        )
+
+    def cut(self, made: OperationPath, progress: Progress) -> bool:
+        """Take a path off the stock, and leave the tool where it ends; return whether the stock is another one then."""
+        if not len(made.path):
+            return False
+        scene, cutter, rolling = self.scene, self.operation.cutter, self.driven.rolling
+        own, changed = scene.setup.frame, True
+        if rolling is not None:
+            flat = laid_flat(made.path, rolling.development, own)
+            scene.sides.cut_over(rolling, flat, cutter, progress)
+        else:
+            setup = self.driven.setup
+            changed = scene.sides.cut(setup, turned(made.path, own, setup.frame), cutter, progress)
+        scene.leave(cutter, made)
+        return changed
+
+    def _key(self) -> str:
+        operation, driven = self.operation, self.driven
+        return digest(
+            operation.strategy,
+            driven.identity,
+            operation.tool,
+            operation.data,
+            self.settings,
+            self.stock.digest,
+            driven.setup,
+            self.scene.before(operation.cutter),
+        )
+
+    def _with_drive_findings(self, made: OperationPath) -> OperationPath:
+        if not self.driven.findings:
+            return made
+        return replace(made, findings=_with(self.driven.findings, made.findings))
+
+
+def _with(first: Sequence[Finding], others: Sequence[Finding]) -> tuple[Finding, ...]:
+    """Return findings once each: those of a path that was kept hold those of its drive already."""
+    codes = {f.code for f in first}
+    return (*first, *(f for f in others if f.code not in codes))
+
+
+def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:
+    """Return a path given in one frame in another one."""
+    if frame is other or not len(path):
+        return path
+    arcs = np.isfinite(path.centre).all(axis=1)
+    centre = path.centre.copy()
+    centre[arcs] = other.to_local(frame.to_world(path.centre[arcs]))
+    return replace(
+        path,
+        position=other.to_local(frame.to_world(path.position)),
+        centre=centre,
+        axis=other.local_direction(frame.world_direction(path.axis)),
+    )

@@ -1,0 +1,190 @@
+"""Operations whose tools lean are made beside each other: the paths are those of one after the other, whatever was before."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from trunnion import registry
+from trunnion.findings import Cancelled, Refused, info
+from trunnion.forks import copies
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
+from trunnion.pipeline import Engine, path_jobs
+from trunnion.pipeline.toolpaths import make_paths
+from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.settings import settings
+from trunnion.toolpath.contract import Planned, leaning_axis, strategy
+
+UPRIGHT, LEANT = np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.0, 0.8])
+can_copy = pytest.mark.skipif(copies() == 0, reason="this process can't be copied")
+
+
+@settings("shop.test")
+class NoSettings:
+    """A strategy of a test takes none."""
+
+
+def planned(stock, setup, axis, deep):
+    """Return a path that goes into the stock and across; which process made it and what it knew of the stock are findings."""
+    middle = stock.corner + 0.5 * stock.cell * np.array(stock.heights.shape)
+    low = [*middle, stock.heights.max() - deep]
+    tips = np.array([[*middle, setup.clearance], low, np.add(low, [10.0, 0.0, 0.0])])
+    return Planned(
+        path=Toolpath(
+            position=tips,
+            axis=np.tile(axis, (3, 1)),
+            motion=np.array([Motion.RAPID, Motion.LINE, Motion.LINE]),
+            feed=np.array([0.0, 100.0, 100.0]),
+            mark=np.array([Mark.RETRACT, Mark.ENTRY, Mark.CUT]),
+            centre=np.full((3, 3), np.nan),
+        ),
+        findings=(
+            info("test.process", str(os.getpid())),
+            info("test.stock", f"{stock.heights.sum():.6f}"),
+        ),
+    )
+
+
+@strategy(settings=NoSettings, tool_axis=leaning_axis)
+def lean(drive, tool, data, stock, setup, settings, progress):
+    """Lean, as declared."""
+    return planned(stock, setup, LEANT, 1.0)
+
+
+@strategy(settings=NoSettings, tool_axis=leaning_axis)
+def stand(drive, tool, data, stock, setup, settings, progress):
+    """Stand upright, though declared as leaning, and cut."""
+    return planned(stock, setup, UPRIGHT, 2.0)
+
+
+@strategy(settings=NoSettings)
+def cut(drive, tool, data, stock, setup, settings, progress):
+    """Stand upright, and cut deeper."""
+    return planned(stock, setup, UPRIGHT, 3.0)
+
+
+@strategy(settings=NoSettings, tool_axis=leaning_axis)
+def refuse(drive, tool, data, stock, setup, settings, progress):
+    """Refuse."""
+    raise Refused("nothing but corners")
+
+
+@strategy(settings=NoSettings, tool_axis=leaning_axis)
+def fail(drive, tool, data, stock, setup, settings, progress):
+    """Fail as no strategy should."""
+    raise ZeroDivisionError("of a test")
+
+
+OWN = {f.__name__: f for f in (lean, stand, cut, refuse, fail)}
+
+
+@pytest.fixture(scope="module")
+def routed(sample_panel):
+    """An engine and its session of the small panel, with operations."""
+    engine = Engine()
+    return engine, engine.run(engine.open(sample_panel), until="optimize")
+
+
+@pytest.fixture
+def made(routed, monkeypatch):
+    """Returns the paths of operations by some of the strategies above, one cutter for all, with copies or without."""
+    known = registry.get
+    monkeypatch.setattr(registry, "get", lambda kind, name: OWN.get(name) or known(kind, name))
+    engine, session = routed
+    first = session.process.operations[0]
+
+    def make(names, beside=2, progress=NO_PROGRESS, kept=()):
+        monkeypatch.setattr(path_jobs, "copies", lambda: beside)
+        own = tuple(replace(first, id=f"own-{n}", strategy=s) for n, s in enumerate(names))
+        process = replace(session.process, operations=own)
+        return make_paths(replace(session, process=process, paths=kept), engine.context, progress)
+
+    return make
+
+
+def told(path, code):
+    return next(f.text for f in path.findings if f.code == code)
+
+
+@can_copy
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("lean", "lean", "lean", "cut", "lean", "lean"),
+        ("lean", "stand", "lean", "lean"),
+        ("stand", "cut", "lean"),
+        ("cut", "refuse", "lean", "stand", "lean", "cut"),
+    ],
+)
+def test_paths_made_beside_each_other_are_those_made_in_turn(made, names) -> None:
+    beside, turn = made(names), made(names, beside=0)
+    assert [p.key for p in beside] == [p.key for p in turn]
+    for one, other in zip(beside, turn, strict=True):
+        assert one.path.position == pytest.approx(other.path.position)
+        assert one.path.axis == pytest.approx(other.path.axis)
+        texts = ([f.text for f in p.findings if f.code != "test.process"] for p in (one, other))
+        assert next(texts) == next(texts)
+
+
+@can_copy
+def test_leaning_tools_are_led_in_copies_all_but_the_last_before_an_upright_one(made) -> None:
+    paths = made(["lean", "lean", "lean", "cut", "lean"])
+    here = [int(told(p, "test.process")) == os.getpid() for p in paths]
+    assert here == [False, False, True, True, True]
+    assert len({told(p, "test.process") for p in paths}) == 3
+    assert all(int(told(p, "test.process")) == os.getpid() for p in made(["lean"] * 3, beside=0))
+
+
+@can_copy
+def test_what_an_upright_tool_has_cut_the_next_one_knows_though_it_was_declared_to_lean(
+    made,
+) -> None:
+    first, second, third = made(["stand", "lean", "lean"])
+    before, after = (float(told(p, "test.stock")) for p in (first, second))
+    assert after < before and told(third, "test.stock") == told(second, "test.stock")
+
+
+@can_copy
+def test_what_a_strategy_refuses_in_a_copy_is_said_and_the_others_go_on(made) -> None:
+    refused, other, _ = made(["refuse", "lean", "lean"])
+    assert [f.code for f in refused.findings] == ["toolpath.refused"]
+    assert "nothing but corners" in refused.findings[0].text and len(other.path)
+
+
+@can_copy
+def test_an_error_in_a_copy_is_not_lost(made) -> None:
+    with pytest.raises(ZeroDivisionError, match="of a test"):
+        made(["fail", "lean", "lean"])
+
+
+@can_copy
+def test_a_cancel_ends_all_copies(made, monkeypatch) -> None:
+    forks = []
+
+    class Kept(path_jobs.Fork):
+        def __init__(self, work):
+            super().__init__(work)
+            forks.append(self)
+
+    @strategy(settings=NoSettings, tool_axis=leaning_axis)
+    def endless(drive, tool, data, stock, setup, settings, progress):
+        while True:
+            progress.check()
+
+    monkeypatch.setitem(OWN, "endless", endless)
+    monkeypatch.setattr(path_jobs, "Fork", Kept)
+    with pytest.raises(Cancelled):
+        made(
+            ["endless", "endless", "endless"], progress=Progress(cancelled=lambda: len(forks) == 2)
+        )
+    assert len(forks) == 2 and all(f.is_done() for f in forks)
+
+
+def test_paths_that_are_still_true_are_kept(made) -> None:
+    names = ["lean", "lean", "lean"]
+    first = made(names)
+    again = made(names, kept=first)
+    assert all(a is b for a, b in zip(first, again, strict=True))
