@@ -179,7 +179,7 @@ def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
     tool, moves = FORMS[form], moves_for(FORMS[form], move)
     parts = supports_of(tool)
     touch = FacetContact(facets(triangles)).along(moves, np.array([1]), threads=1)
-    bound = tolerance.TURNING_BOUND if moves.turning[1] else tolerance.CONTACT_BOUND
+    bound = tolerance.TURNING_BOUND if moves.turning()[1] else tolerance.CONTACT_BOUND
     for kind in (0, 1):
         deepest, measured = (
             max(sampled_depth(p, move, t) for p in parts if p[3] == kind for t in triangles),

@@ -122,7 +122,7 @@ def test_between_operations_the_tool_goes_round_all_that_stands_on_the_table(nam
     text = dialect.write([made], HEADER, PostSettings(), {"S1": place})
     (read,) = dialect.read(text, (FLAT_16,), [S1], {"S1": place})
     moves = moves_of(read.sections)
-    turning = np.flatnonzero(moves.rapid & moves.turning)
+    turning = np.flatnonzero(moves.rapid & moves.turning())
     assert len(turning) > 10
     for share in np.linspace(0.0, 1.0, 11):
         tip = (1.0 - share) * moves.start[turning] + share * moves.end[turning]

@@ -37,6 +37,8 @@ AXIS_LEAN = 1e-9
 """A tool axis this close to +z (its sine) stands on it: it comes from a fixed axis written with twelve digits."""
 
 
+EVERY = slice(None)
+"""All moves."""
 PER_MOVE = (
     "start",
     "end",
@@ -95,12 +97,10 @@ class Moves:
             self, stances=NO_STANCES, **{name: getattr(self, name)[rows] for name in PER_MOVE}
         )
 
-    @property
-    def turning(self) -> Bools:
-        """Whether the tool axis turns along each move (n,)."""
-        return np.asarray(
-            np.abs(self.end_axis - self.start_axis).max(axis=1, initial=0.0) > AXIS_LEAN
-        )
+    def turning(self, rows: Ints | Bools | slice = EVERY) -> Bools:
+        """Return along which of some moves (k,) the tool axis turns."""
+        turned = np.abs(self.end_axis[rows] - self.start_axis[rows]).max(axis=1, initial=0.0)
+        return np.asarray(turned > AXIS_LEAN)
 
     @property
     def cutters(self) -> Floats:

@@ -170,7 +170,7 @@ class FacetContact:
         self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf
     ) -> Penetration:
         tree, bodies, k, f = self._ready(progress), moves.bodies, len(rows), len(self.facets.tag)
-        bound = np.where(moves.turning[rows], tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
+        bound = np.where(moves.turning(rows), tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
         enough = np.full(k, settle) if np.isfinite(settle) else bound
         penetration = Penetration(
             depth=np.full((k, 2), -np.inf),

@@ -305,7 +305,7 @@ def tool_motions(moves: Moves, rows: Ints) -> Floats:
     out = np.zeros((len(rows), kernel.MOTION_COLUMNS))
     a, b = moves.start_axis[rows], moves.end_axis[rows]
     a = np.where(moves.upright[rows, None], [0.0, 0.0, 1.0], a)
-    turning = moves.turning[rows] & ~moves.upright[rows]
+    turning = moves.turning(rows) & ~moves.upright[rows]
     across = b - (a * b).sum(axis=1, keepdims=True) * a
     # A still axis, or one that turns right over, may take any direction across it.
     aside = np.where(np.abs(a[:, :1]) < 0.9, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])

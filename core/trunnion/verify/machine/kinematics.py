@@ -62,7 +62,7 @@ def axis_positions(moves: Moves, machine: Machine, foot: Floats) -> AxisPosition
         linear=linear_positions(tip - foot, gauge, rotary, machine),
         rotary=rotary,
         reached=reached,
-        turns=moves.turning,
+        turns=moves.turning(),
     )
 
 

@@ -11,7 +11,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels import body as body_kernel
 from trunnion.verify.kernels.stock import dexels as kernel
-from trunnion.verify.motion import AXIS_LEAN, Moves
+from trunnion.verify.motion import AXIS_LEAN, EVERY, Moves
 from trunnion.verify.stock.bundles import cycle
 
 VECTORS = kernel.SPAN_COLUMNS // 3
@@ -38,14 +38,14 @@ def whole_arcs(moves: Moves, along: Sequence[int]) -> Bools:
         np.sort(axis, axis=1)[:, :2].max(axis=1, initial=0.0) < kernel.LEVEL / 10.0
     )
     return np.asarray(
-        (moves.sweep != 0.0) & straight & (climb < kernel.LEVEL / 10.0) & ~moves.turning
+        (moves.sweep != 0.0) & straight & (climb < kernel.LEVEL / 10.0) & ~moves.turning()
     )
 
 
 def spans_each(moves: Moves, whole: Bools) -> Ints:
     """Return into how many spans each move (n,) is cut; `whole` arcs are one."""
     size = _sizes(moves)[moves.tool]
-    theta = _turns(moves)
+    theta = _turns(moves, EVERY)
     run = np.linalg.norm(moves.end - moves.start, axis=1)
     # A point's way past a turning tool bends by the turn squared at arm's length, and by turn and way together.
     turning = np.sqrt(
@@ -88,7 +88,7 @@ class _Poses:
         self.start, self.displacement = moves.start[rows], moves.end[rows] - moves.start[rows]
         self.sweep = moves.sweep[rows]
         axis = moves.start_axis[rows]
-        self.theta = _turns(moves)[rows]
+        self.theta = _turns(moves, rows)
         ahead = (
             moves.end_axis[rows] - (moves.end_axis[rows] * axis).sum(axis=1, keepdims=True) * axis
         )
@@ -154,11 +154,12 @@ class _Poses:
         )
 
 
-def _turns(moves: Moves) -> Floats:
-    """Return the angle that the axis of each move turns by (n,), 0 where it keeps still."""
-    across = np.linalg.norm(np.cross(moves.start_axis, moves.end_axis), axis=1)
-    theta = np.arctan2(across, (moves.start_axis * moves.end_axis).sum(axis=1))
-    return np.where(moves.turning & (across > AXIS_LEAN), theta, 0.0)
+def _turns(moves: Moves, rows: Ints | slice) -> Floats:
+    """Return the angle that the axis of each of some moves turns by (k,), 0 where it keeps still."""
+    first, last = moves.start_axis[rows], moves.end_axis[rows]
+    across = np.linalg.norm(np.cross(first, last), axis=1)
+    theta = np.arctan2(across, (first * last).sum(axis=1))
+    return np.where(moves.turning(rows) & (across > AXIS_LEAN), theta, 0.0)
 
 
 def _sizes(moves: Moves) -> Floats:
