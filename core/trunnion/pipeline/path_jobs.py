@@ -77,14 +77,14 @@ class PathJobs:
             copy.stop()
 
     def add(self, operation: Operation, progress: Progress, *, more: bool) -> None:
-        """Begin the path of an operation; with `more` the next operation leans its tool too."""
+        """Begin the path of an operation; with `more` another one follows it."""
         strategy = registry.get(STRATEGIES, operation.strategy)
         if strategy.drive is RevolvedDrive:
             self.take_over()
             path = turned_path(self._session, self._planner, self._scene, operation, progress)
             self._taken(operation, path)
             return
-        leans, may_be_kept = self.leans(operation), self._session.path_of(operation.id) is not None
+        leans, may_be_kept = self._leans(operation), self._session.path_of(operation.id) is not None
         if may_be_kept:
             self.take_over()
         begun = self._prepared(operation, progress)
@@ -110,7 +110,7 @@ class PathJobs:
         finally:
             self._is_taking_over = False
 
-    def leans(self, operation: Operation) -> bool:
+    def _leans(self, operation: Operation) -> bool:
         """Return whether the tool of an operation leans from its setup's or its cutting frame's z."""
         strategy = registry.get(STRATEGIES, operation.strategy)
         settings = checked(

@@ -79,8 +79,7 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
                     text = f"toolpath of {operation.id}"
                     here = progress.part((done + n) / total, (done + n + 1) / total, text)
                     here.at(0.0)
-                    more = n + 1 < len(operations) and queue.leans(operations[n + 1])
-                    queue.add(operation, here, more=more)
+                    queue.add(operation, here, more=n + 1 < len(operations))
                 queue.take_over()
             done += len(operations)
             if scene.blank is not blank:

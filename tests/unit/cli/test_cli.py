@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -32,6 +33,21 @@ def test_help_loads_nothing_heavy() -> None:
     assert said.splitlines()[-1] == "HEAVY []"
     general = (module.rpartition(".")[2] for module in GENERAL)
     assert all(command in said for command in (*general, *registry.names("commands")))
+
+
+@pytest.mark.parametrize(("given", "threads"), [(None, "1"), ("4", "4")])
+def test_linear_algebra_has_one_thread_unless_a_person_sets_it(given, threads) -> None:
+    own = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"}
+    if given is not None:
+        own["OPENBLAS_NUM_THREADS"] = given
+    code = (
+        "import os, sys, trunnion\n"
+        "print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=own
+    ).stdout
+    assert said.split() == [threads, "False"]
 
 
 @pytest.mark.parametrize(
