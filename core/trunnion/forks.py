@@ -20,6 +20,8 @@ from typing import Generic, NoReturn, TypeVar
 from trunnion.progress import LOOK_S, Progress
 
 T = TypeVar("T")
+FIRST_PAUSE = 1e-3
+"""Seconds between the first two looks at a copy: longer and longer ones follow, so that short work is not waited for long."""
 FRACTION = struct.Struct("d")
 """How far a copy is, in the memory that it shares."""
 
@@ -38,8 +40,9 @@ class Fork(Generic[T]):
         self._shared = mmap(-1, FRACTION.size)
         # The answer is kept until it is asked for: a pipe would make the copy wait.
         self._output = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the answer, or by stop
-        sys.stdout.flush()
-        sys.stderr.flush()
+        for stream in (sys.stdout, sys.stderr):
+            if stream is not None:
+                stream.flush()
         parent = os.getpid()
         self.process = os.fork()
         if self.process == 0:
@@ -54,9 +57,11 @@ class Fork(Generic[T]):
     def result(self, progress: Progress) -> T:
         """Return what the work returns, or raise what it raises, once it has ended. Where the copy was ended from outside (no memory
         left), the work is done here."""
+        pause = FIRST_PAUSE
         while not self.is_done():
             progress.at(FRACTION.unpack_from(self._shared)[0])
-            time.sleep(LOOK_S)
+            time.sleep(pause)
+            pause = min(2.0 * pause, LOOK_S)
         self._output.seek(0)
         try:
             value, reason = pickle.load(self._output)
