@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import TracebackType
 
 from trunnion import registry
@@ -139,12 +139,7 @@ class PathJobs:
         self._idle()
         copy = Fork(begun.make)
         self._copies.append(copy)
-        return _Begun(
-            operation=begun.operation,
-            progress=begun.progress,
-            prepared=begun.prepared,
-            make=copy.result,
-        )
+        return replace(begun, make=copy.result)
 
     def _take(self, begun: _Begun) -> bool:
         """Take over a path; return whether the stock is another one then."""
@@ -171,9 +166,7 @@ def _made(begun: _Begun) -> _Begun:
         make = _raising(reason)
     else:
         make = _returning(planned)
-    return _Begun(
-        operation=begun.operation, progress=begun.progress, prepared=begun.prepared, make=make
-    )
+    return replace(begun, make=make)
 
 
 def _returning(planned: Planned) -> Maker:

@@ -74,13 +74,13 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
                 for load in loads[-1:]:
                     load()
 
-            with PathJobs(session, planner, scene, taken, idle) as queue:
+            with PathJobs(session, planner, scene, taken, idle) as jobs:
                 for n, operation in enumerate(operations):
                     text = f"toolpath of {operation.id}"
                     here = progress.part((done + n) / total, (done + n + 1) / total, text)
                     here.at(0.0)
-                    queue.add(operation, here, more=n + 1 < len(operations))
-                queue.take_over()
+                    jobs.add(operation, here, more=n + 1 < len(operations))
+                jobs.take_over()
             done += len(operations)
             if scene.blank is not blank:
                 blank = scene.blank
