@@ -161,17 +161,23 @@ class Sweep:
 
         in_parallel(some, len(rows), CHUNK, progress, "Measuring material left", threads)
 
-    def cut_before(self, points: Floats, move: int, threads: int = 0) -> Bools:
-        """Return for each point (s, 3) whether a feed move before a row has removed it. Upright plain cutters also remove all above."""
+    def cut_before(
+        self, points: Floats, move: int | Ints, progress: Progress = NO_PROGRESS, threads: int = 0
+    ) -> Bools:
+        """Return for each point (s, 3) whether a feed move before a row, one for all or each point's own (s,), has removed it.
+
+        Upright plain cutters also remove all above.
+        """
         out, g = np.zeros(len(points), bool), self.grid
         points = np.ascontiguousarray(points, dtype=np.float64)
+        before = np.ascontiguousarray(np.broadcast_to(move, len(points)), dtype=np.int64)
 
         def some(first: int, last: int) -> None:
             kernel.removed_loop(
                 first,
                 last,
                 points,
-                move,
+                before,
                 self.moves.row,
                 self.cutter,
                 self.low,
@@ -185,7 +191,7 @@ class Sweep:
                 out,
             )
 
-        in_parallel(some, len(points), CHUNK, NO_PROGRESS, "", threads)
+        in_parallel(some, len(points), CHUNK, progress, "Looking closer at rapids", threads)
         return out
 
     def cut_around(self, points: Floats, margin: float, move: int) -> Bools:

@@ -732,7 +732,7 @@ def removed_loop(
     first: int,
     last: int,
     points: Floats,
-    before: int,
+    before: Ints,
     moves: Floats,
     cutter: Floats,
     low: Floats,
@@ -745,8 +745,8 @@ def removed_loop(
     bound: float,
     out: Bools,
 ) -> None:
-    """Fill out[first:last] with whether a move with a row below `before` has removed each point (s,
-    3); upright plain cutters also all above.
+    """Fill out[first:last] with whether a move with a row below a point's own `before` (s,) has
+    removed it (s, 3); upright plain cutters also all above.
 
     Points within `bound` (mm) outside of what is cut count as removed.
     """
@@ -758,7 +758,7 @@ def removed_loop(
     for n in range(first, last):
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
         out[n] = _removed_from_above(
-            x, y, z, before, 0.0, bound, moves, cutter, low, cell_start, cell_move, grid, shape
+            x, y, z, before[n], 0.0, bound, moves, cutter, low, cell_start, cell_move, grid, shape
         )
         if not out[n]:
             out[n] = (
@@ -771,7 +771,7 @@ def removed_loop(
                     2.0 * bound,
                     -1,
                     bound,
-                    before,
+                    before[n],
                     True,
                     bound,
                     nodes,

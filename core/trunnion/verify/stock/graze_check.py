@@ -11,7 +11,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
-from trunnion.progress import Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.cutter import lowest_height
 from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.kernels.contact import strips as columns
@@ -36,32 +36,52 @@ def rays_in_cell(pitch: float) -> int:
 
 
 def confirm_grazed(
-    stock: Stock, found: Passed, frame: Frame, sweep: Sweep, progress: Progress
+    stock: Stock,
+    found: Passed,
+    frame: Frame,
+    sweep: Sweep,
+    progress: Progress = NO_PROGRESS,
+    threads: int = 0,
 ) -> None:
-    """Note the rapids that are in material at a position between rays, where no cut before has been."""
+    """Note the rapids that are in material at a position between rays, where no cut before has been: the deepest of each."""
     if not found.grazed:
         return
-    moves, positions = (
-        np.concatenate([m for m, _ in found.grazed]),
-        np.vstack([p for _, p in found.grazed]),
-    )
-    for row in np.unique(moves):
-        progress.check()
-        own = positions[moves == row]
-        in_material = _in_material(stock, own[:, :3], frame, sweep, int(row))
-        if in_material.any():
-            k = int(np.argmax(np.where(in_material, own[:, 3], -np.inf)))
-            if own[k, 3] > found.depth[row]:
-                found.depth[row], found.position[row] = own[k, 3], own[k, :3]
+    rows = np.concatenate([m for m, _ in found.grazed])
+    positions = np.vstack([p for _, p in found.grazed])
+    # All positions are asked for at once: thousands of rapids go by a few places each.
+    deeper = np.flatnonzero(positions[:, 3] > found.depth[rows])
+    uncut = deeper[
+        _in_material(stock, positions[deeper, :3], frame, sweep, rows[deeper], progress, threads)
+    ]
+    order = uncut[np.lexsort((-positions[uncut, 3], rows[uncut]))]
+    rapids, first = np.unique(rows[order], return_index=True)
+    found.depth[rapids] = positions[order[first], 3]
+    found.position[rapids] = positions[order[first], :3]
 
 
-def _in_material(stock: Stock, positions: Floats, frame: Frame, sweep: Sweep, row: int) -> Bools:
-    """Return which positions (k, 3) in the blank's frame neither a setup before nor a move before `row` has cut."""
-    world = stock.frame.to_world(positions)
+def _in_material(
+    stock: Stock,
+    positions: Floats,
+    frame: Frame,
+    sweep: Sweep,
+    row: int | Ints,
+    progress: Progress = NO_PROGRESS,
+    threads: int = 0,
+) -> Bools:
+    """Return which positions (k, 3) in the blank's frame neither a setup before nor a move before `row` (one for all, or (k,)) has cut."""
     in_material = stock.was_solid(positions)
-    in_material &= ~sweep.cut_before(frame.to_local(world), row)
-    for before, own in stock.cut_by:
-        in_material &= ~before.cut_before(own.to_local(world), len(before.moves))
+    world = stock.frame.to_world(positions)
+    row = np.broadcast_to(row, len(positions))
+    sweeps = [(sweep, frame, row)]
+    sweeps += [(s, f, np.full(len(positions), len(s.moves))) for s, f in stock.cut_by]
+    for k, (before, own, last) in enumerate(sweeps):
+        doubtful = np.flatnonzero(in_material)
+        in_material[doubtful] = ~before.cut_before(
+            own.to_local(world[doubtful]),
+            last[doubtful],
+            progress.part(k / len(sweeps), (k + 1) / len(sweeps)),
+            threads,
+        )
     return in_material
 
 

@@ -18,6 +18,9 @@ from trunnion.verify.stock.heights import run_heights
 from trunnion.verify.stock.rays import BundleStart, Passed, run_rays
 from trunnion.verify.stock.stock import Stock
 
+GRAZE_FROM = 0.9
+"""Share of the work after which the rapids that graze material are looked at."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class StockRun:
@@ -57,7 +60,7 @@ def run_stock(
         lambda _: (seen_from(moves, frame, stock.frame), probes_of(moves)), "Cutting the stock"
     )
     found = Passed.empty(len(moves), probes)
-    heights = progress.part(0.0, 1.0 if stock.bundles == ("z",) else 0.3)
+    heights = progress.part(0.0, GRAZE_FROM if stock.bundles == ("z",) else 0.3)
     row, looked = run_heights(stock, local, frame, sweep, probes, found, heights)
     if row < len(moves):
         stock.open_field()
@@ -67,9 +70,9 @@ def run_stock(
     ]
     if starts:
         fine = rays_in_cell(stock.pitch) if sweep is not None else 0
-        run_rays(stock, starts, local, probes, found, fine, progress.part(0.3, 1.0), threads)
+        run_rays(stock, starts, local, probes, found, fine, progress.part(0.3, GRAZE_FROM), threads)
     if sweep is not None:
-        confirm_grazed(stock, found, frame, sweep, progress.part(1.0, 1.0))
+        confirm_grazed(stock, found, frame, sweep, progress.part(GRAZE_FROM, 1.0), threads)
         stock.cut_by.append((sweep, frame))
     rapid_depth = np.where(found.depth > tolerance.RAPID_DEPTH, found.depth, 0.0)
     position = np.where(rapid_depth[:, None] > 0.0, found.position, np.nan)
