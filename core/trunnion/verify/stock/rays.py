@@ -14,6 +14,7 @@ from trunnion.progress import Progress
 from trunnion.threads import in_parallel
 from trunnion.verify.cutter import Bodies
 from trunnion.verify.kernels.stock import dexels as kernel
+from trunnion.verify.kernels.stock.swept_bounds import ALL_BOX
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock.bundles import AXES, Bundle, cycle
 from trunnion.verify.stock.engagement import Probes, Tally
@@ -277,7 +278,7 @@ class _Job:
 
 def _looks(spans: Spans, within: tuple[Floats, Floats], bundles: Sequence[Bundle]) -> Floats:
     """Return a bound for the rays that each move may have to look at."""
-    box = spans.row[:, kernel.ALL_BOX : kernel.ALL_BOX + 6].reshape(-1, 2, 3)
+    box = spans.row[:, ALL_BOX : ALL_BOX + 6].reshape(-1, 2, 3)
     low, high = within
     size = np.minimum(box[:, 1], high) - np.maximum(box[:, 0], low)
     there = (size > 0.0).all(axis=1)

@@ -10,11 +10,12 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.verify.kernels import body as body_kernel
-from trunnion.verify.kernels.stock import dexels as kernel
+from trunnion.verify.kernels.stock.dexels import LEVEL
+from trunnion.verify.kernels.stock.swept_bounds import SPAN_COLUMNS
 from trunnion.verify.motion import AXIS_LEAN, EVERY, Moves
 from trunnion.verify.stock.bundles import cycle
 
-VECTORS = kernel.SPAN_COLUMNS // 3
+VECTORS = SPAN_COLUMNS // 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,7 +28,7 @@ class Spans:
     def along(self, axis: int) -> Floats:
         """Return the rows in the coordinates of a bundle."""
         turned = self.row.reshape(-1, VECTORS, 3)[:, :, cycle(axis)]
-        return np.ascontiguousarray(turned.reshape(-1, kernel.SPAN_COLUMNS))
+        return np.ascontiguousarray(turned.reshape(-1, SPAN_COLUMNS))
 
 
 def whole_arcs(moves: Moves, along: Sequence[int]) -> Bools:
@@ -35,11 +36,9 @@ def whole_arcs(moves: Moves, along: Sequence[int]) -> Bools:
     climb = np.abs(((moves.end - moves.start) * moves.start_axis).sum(axis=1))
     axis = np.abs(moves.start_axis)
     straight = np.isin(axis.argmax(axis=1), along) & (
-        np.sort(axis, axis=1)[:, :2].max(axis=1, initial=0.0) < kernel.LEVEL / 10.0
+        np.sort(axis, axis=1)[:, :2].max(axis=1, initial=0.0) < LEVEL / 10.0
     )
-    return np.asarray(
-        (moves.sweep != 0.0) & straight & (climb < kernel.LEVEL / 10.0) & ~moves.turning()
-    )
+    return np.asarray((moves.sweep != 0.0) & straight & (climb < LEVEL / 10.0) & ~moves.turning())
 
 
 def spans_each(moves: Moves, whole: Bools) -> Ints:
@@ -78,7 +77,7 @@ def spans_of(moves: Moves, rows: Ints, each: Ints, whole: Bools) -> Spans:
     size = _sizes(moves)[moves.tool[move]]
     row[:, 8:10] = _boxes(row, size[:, 0], size[:, 2])
     row[:, 10:12] = _boxes(row, size[:, 1], size[:, 3])
-    return Spans(row.reshape(-1, kernel.SPAN_COLUMNS), start)
+    return Spans(row.reshape(-1, SPAN_COLUMNS), start)
 
 
 class _Poses:

@@ -37,9 +37,7 @@ from trunnion.verify.kernels.body import (
     CLOSED_FIRST,
     CLOSED_LAST,
     KIND,
-    R_MAX,
     Z_HIGH,
-    Z_LOW,
     depth_in_body,
     radius_at,
 )
@@ -56,26 +54,26 @@ from trunnion.verify.kernels.stock.intervals import (
     subtract_from_ray,
     subtract_interval,
 )
-
-# Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends,
-# then the boxes of what cuts, of all and of the tip's path. Of an arc that runs level about an axis
-# of the blank, the whole is one span: centre, direction of its middle, then radius and cosine of
-# half its angle (each three times, so that turning coordinates changes nothing); the radius is 0
-# for all others.
-TIP0, FRAME0, TIP1, FRAME1, CUT_BOX, ALL_BOX, MOTION_BOX, CENTRE, MIDDLE, ARC_RADIUS, COS_HALF = (
-    0,
-    3,
-    12,
-    15,
-    24,
-    30,
-    36,
-    42,
-    45,
-    48,
-    51,
+from trunnion.verify.kernels.stock.swept_bounds import (
+    ALL_BOX,
+    ARC_RADIUS,
+    CENTRE,
+    COS_HALF,
+    CUT_BOX,
+    CYLINDER,
+    FRAME0,
+    FRAME1,
+    MIDDLE,
+    TIP0,
+    TIP1,
+    capsule_row,
+    cell_range,
+    cylinder_interval,
+    swept_box,
+    swept_capsule,
+    swept_cylinder,
 )
-SPAN_COLUMNS = 54
+
 # A ray in the tool frames of a span: foot (3) and direction (3) at the start, what both gain until
 # the end (3, 3), by how much the direction turns, how much smaller the body is taken, and room to
 # sort places on it.
@@ -88,13 +86,8 @@ GAP = 2e-4
 `tolerance.STOCK_CHORD`."""
 SURE = 1e-3
 """mm: how far the depth found in a body that turns may be below the deepest: a tenth of what a rapid is judged by."""
-BENT = 0.01
-"""mm that boxes are wider by where a tool turns: its points leave the straight ways between both ends by a few micrometres."""
 LEVEL = 1e-9
 """An axis this close (its sine) lies along rays or across them, and a move this close (mm) is level."""
-EDGE = 1e-5
-"""mm that a capsule is wider by: what its rows are rounded by where its axis runs nearly along them."""
-
 
 _in_body = njit(nogil=True, inline="always")(depth_in_body.py_func)
 """Written into its callers, as are those marked so below: calls of their own take half as long again (measured)."""
@@ -357,96 +350,6 @@ def _arc_distance(span: Floats, u: float, v: float, w: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _swept_box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
-    """Write box (6,), low and high of u, v, w, of what a piece sweeps in a span.
-
-    Across a direction that the axis leans to by a, a disc of radius r reaches r sqrt(1 - a^2). With
-    `turns` wider by BENT.
-    """
-    r, more = piece[R_MAX], BENT if turns else 0.0
-    if span[ARC_RADIUS] != 0.0:
-        for m in range(3):
-            a = span[FRAME0 + 6 + m]
-            across, p, q = r * math.sqrt(max(1.0 - a * a, 0.0)), a * piece[Z_LOW], a * piece[Z_HIGH]
-            box[m], box[3 + m] = (
-                span[MOTION_BOX + m] + min(p, q) - across,
-                span[MOTION_BOX + 3 + m] + max(p, q) + across,
-            )
-        return
-    for m in range(3):
-        low, high = np.inf, -np.inf
-        for end in range(2):
-            tip = span[TIP0 + m] if end == 0 else span[TIP1 + m]
-            a = span[FRAME0 + 6 + m] if end == 0 else span[FRAME1 + 6 + m]
-            across = r * math.sqrt(max(1.0 - a * a, 0.0)) + more
-            p, q = tip + a * piece[Z_LOW], tip + a * piece[Z_HIGH]
-            low, high = min(low, min(p, q) - across), max(high, max(p, q) + across)
-        box[m], box[3 + m] = low, high
-
-
-@njit(cache=True, nogil=True)
-def _swept_capsule(capsule: Floats, span: Floats, piece: Floats, turns: bool) -> None:
-    """Write capsule (5,): the (u, v) of both ends of a piece's axis half-way through a span, and the radius (mm)
-    within which all lies that the piece sweeps; infinite for an arc that is one span.
-
-    Between both times a point of the axis runs straight: nowhere farther from its middle than half its way.
-    """
-    capsule[4] = np.inf
-    if span[ARC_RADIUS] != 0.0:
-        return
-    way = 0.0
-    for end in range(2):
-        z, square = piece[Z_LOW] if end == 0 else piece[Z_HIGH], 0.0
-        for m in range(2):
-            p = span[TIP0 + m] + z * span[FRAME0 + 6 + m]
-            q = span[TIP1 + m] + z * span[FRAME1 + 6 + m]
-            capsule[2 * end + m] = 0.5 * (p + q)
-            square += (q - p) * (q - p)
-        way = max(way, math.sqrt(square))
-    capsule[4] = piece[R_MAX] + 0.5 * way + (BENT if turns else 0.0) + EDGE
-
-
-@njit(cache=True, nogil=True)
-def _capsule_row(capsule: Floats, v: float) -> tuple[float, float]:
-    """Return the least and the greatest u of a capsule at some v, the least greater where it is not there.
-
-    A disc about the point at s = v - y of the axis reaches u = x -+ sqrt(rho^2 - s^2). With k = dx / dy of the axis both
-    ends are convex in s, extreme where s = +- rho k / sqrt(1 + k^2), or at the end of the axis before.
-    """
-    rho = capsule[4]
-    if rho == np.inf:
-        return -np.inf, np.inf
-    dx, dy = capsule[2] - capsule[0], capsule[3] - capsule[1]
-    begin = v - capsule[1]
-    if abs(dy) < EDGE:
-        if abs(begin) > rho:
-            return np.inf, -np.inf
-        half = math.sqrt(rho * rho - begin * begin) + EDGE
-        return min(capsule[0], capsule[2]) - half, max(capsule[0], capsule[2]) + half
-    first, last = max(min(begin, begin - dy), -rho), min(max(begin, begin - dy), rho)
-    if first > last:
-        return np.inf, -np.inf
-    k = dx / dy
-    extreme = rho * k / math.sqrt(1.0 + k * k)
-    a, b = min(max(extreme, first), last), min(max(-extreme, first), last)
-    return (
-        capsule[0] + (begin - a) * k - math.sqrt(rho * rho - a * a) - EDGE,
-        capsule[0] + (begin - b) * k + math.sqrt(rho * rho - b * b) + EDGE,
-    )
-
-
-@njit(cache=True, nogil=True)
-def _cell_range(
-    low: float, high: float, origin: float, pitch: float, first: int, last: int
-) -> tuple[int, int]:
-    """Return the first cell and the one after the last whose centres lie between two coordinates (mm),
-    of those from `first` to `last`."""
-    a = int(math.ceil((low - origin) / pitch - 0.5))
-    b = int(math.floor((high - origin) / pitch - 0.5)) + 1
-    return max(a, first), min(b, last)
-
-
-@njit(cache=True, nogil=True)
 def _disc_radius(arcs: Floats, first: int, last: int, limit: float, h: float) -> float:
     """Return the radius (mm) of what a body cuts at a height, less SHRINK; 0 where it cuts nothing."""
     if h > limit - SHRINK or depth_in_body(arcs, first, last, 0.0, h)[0] <= SHRINK:
@@ -684,15 +587,15 @@ def _tridexel_cut_ray(
     v: float,
     rays: Rays,
     cell: int,
-    box: Floats,
+    w_low: float,
+    w_high: float,
 ) -> tuple[float, bool]:
-    """Cut a ray by a piece within a span; return the length (mm) that is gone, and whether the ray had
+    """Cut a ray between two positions by a piece within a span; return the length (mm) that is gone, and whether the ray had
     room for all that is left.
 
     A closed form where the ray lies across the axis of a tool that moves level; else each interval
     of material is searched from both ends.
     """
-    w_low, w_high = box[2], box[5]
     if abs(ray[5]) + abs(ray[8]) + ray[TWIST] < LEVEL:
         if span[ARC_RADIUS] == 0.0:
             a, b = _swept_disc_interval(arcs, first, last, limit, ray)
@@ -842,8 +745,8 @@ def _graze_candidates(
     ray[SMALLER] is what is allowed, so only deeper contact is listed. A suspicion:
     `stock/graze_check.py` confirms it.
     """
-    i0, i1 = _cell_range(box[0] - 0.5 * pitch, box[3] + 0.5 * pitch, origin[0], pitch, 0, columns)
-    j0, j1 = _cell_range(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)
+    i0, i1 = cell_range(box[0] - 0.5 * pitch, box[3] + 0.5 * pitch, origin[0], pitch, 0, columns)
+    j0, j1 = cell_range(box[1] - 0.5 * pitch, box[4] + 0.5 * pitch, origin[1], pitch, row, end_row)
     # Behind what earlier spans have listed.
     listed = 0
     while listed < len(positions) and positions[listed, 3] > 0.0:
@@ -949,6 +852,7 @@ def tridexel_cut_tile(
     to continue. Tiles are independent, so the result doesn't depend on how many run at a time.
     """
     ray, box, capsule, corner = np.zeros(RAY_COLUMNS), np.empty(6), np.empty(5), np.empty(2)
+    cylinder = np.empty(CYLINDER)
     ray[SMALLER] = SHRINK
     # Range of w that holds the tile's material: what lies outside of it is skipped.
     bottom, top = np.inf, -np.inf
@@ -1014,19 +918,20 @@ def tridexel_cut_tile(
                     resumes = resumes and p == resume[2]
                     if piece[p, KIND] != 0.0:
                         break
-                    _swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
+                    swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
                     if box[2] > top or box[5] < bottom:
                         continue
                     first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
                     limit = _flute_limit(piece, p, p1)
-                    _swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
-                    j0, j1 = _cell_range(box[1], box[4], origin[1], pitch, row, end_row)
+                    swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
+                    swept_cylinder(cylinder, span[s], piece[p], ray[TWIST] > 0.0)
+                    j0, j1 = cell_range(box[1], box[4], origin[1], pitch, row, end_row)
                     for j in range(max(j0, resume[3]) if resumes else j0, j1):
                         v = origin[1] + (j + 0.5) * pitch
-                        least, most = _capsule_row(capsule, v)
+                        least, most = capsule_row(capsule, v)
                         if least > most:
                             continue
-                        i0, i1 = _cell_range(
+                        i0, i1 = cell_range(
                             max(box[0], least), min(box[3], most), origin[0], pitch, 0, columns
                         )
                         for i in range(
@@ -1036,6 +941,10 @@ def tridexel_cut_tile(
                             if ray_misses(rays, cell, box[2], box[5]):
                                 continue
                             u = origin[0] + (i + 0.5) * pitch
+                            low, high = cylinder_interval(cylinder, u, v)
+                            low, high = max(low, box[2]), min(high, box[5])
+                            if low >= high or ray_misses(rays, cell, low, high):
+                                continue
                             _ray_in_tool_frame(ray, span[s], u, v)
                             gone, whole = _tridexel_cut_ray(
                                 arcs,
@@ -1048,7 +957,8 @@ def tridexel_cut_tile(
                                 v,
                                 rays,
                                 cell,
-                                box,
+                                low,
+                                high,
                             )
                             removed[n] += gone
                             if not whole:
@@ -1079,18 +989,18 @@ def tridexel_cut_tile(
                 cuts = piece[p, KIND] == 0.0
                 if cuts and not rapid[n]:
                     continue
-                _swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
+                swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
                 if box[2] > top or box[5] < bottom:
                     continue
                 first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
-                _swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
-                j0, j1 = _cell_range(box[1], box[4], origin[1], pitch, row, end_row)
+                swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
+                j0, j1 = cell_range(box[1], box[4], origin[1], pitch, row, end_row)
                 for j in range(j0, j1):
                     v = origin[1] + (j + 0.5) * pitch
-                    least, most = _capsule_row(capsule, v)
+                    least, most = capsule_row(capsule, v)
                     if least > most:
                         continue
-                    i0, i1 = _cell_range(
+                    i0, i1 = cell_range(
                         max(box[0], least), min(box[3], most), origin[0], pitch, 0, columns
                     )
                     for i in range(i0, i1):
