@@ -58,9 +58,9 @@ from trunnion.verify.kernels.stock.swept_bounds import (
     ALL_BOX,
     ARC_RADIUS,
     CENTRE,
+    CONE,
     COS_HALF,
     CUT_BOX,
-    CYLINDER,
     FRAME0,
     FRAME1,
     MIDDLE,
@@ -68,10 +68,11 @@ from trunnion.verify.kernels.stock.swept_bounds import (
     TIP1,
     capsule_row,
     cell_range,
-    cylinder_interval,
+    cone_interval,
+    enclosing_cone,
     swept_box,
     swept_capsule,
-    swept_cylinder,
+    swept_cone,
 )
 
 # A ray in the tool frames of a span: foot (3) and direction (3) at the start, what both gain until
@@ -852,7 +853,9 @@ def tridexel_cut_tile(
     to continue. Tiles are independent, so the result doesn't depend on how many run at a time.
     """
     ray, box, capsule, corner = np.zeros(RAY_COLUMNS), np.empty(6), np.empty(5), np.empty(2)
-    cylinder = np.empty(CYLINDER)
+    cone, enclosing = np.empty(CONE), np.empty((len(piece), 2))
+    for p in range(len(piece)):
+        enclosing[p, 0], enclosing[p, 1] = enclosing_cone(arcs, piece[p])
     ray[SMALLER] = SHRINK
     # Range of w that holds the tile's material: what lies outside of it is skipped.
     bottom, top = np.inf, -np.inf
@@ -924,7 +927,9 @@ def tridexel_cut_tile(
                     first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
                     limit = _flute_limit(piece, p, p1)
                     swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
-                    swept_cylinder(cylinder, span[s], piece[p], ray[TWIST] > 0.0)
+                    swept_cone(
+                        cone, span[s], piece[p], enclosing[p, 0], enclosing[p, 1], ray[TWIST] > 0.0
+                    )
                     j0, j1 = cell_range(box[1], box[4], origin[1], pitch, row, end_row)
                     for j in range(max(j0, resume[3]) if resumes else j0, j1):
                         v = origin[1] + (j + 0.5) * pitch
@@ -941,7 +946,7 @@ def tridexel_cut_tile(
                             if ray_misses(rays, cell, box[2], box[5]):
                                 continue
                             u = origin[0] + (i + 0.5) * pitch
-                            low, high = cylinder_interval(cylinder, u, v)
+                            low, high = cone_interval(cone, u, v)
                             low, high = max(low, box[2]), min(high, box[5])
                             if low >= high or ray_misses(rays, cell, low, high):
                                 continue

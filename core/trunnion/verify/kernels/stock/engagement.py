@@ -251,6 +251,7 @@ def engagement_in_dexels(
     which material beside it is looked for.
     """
     margin, cell = 0.70711 * pitch, 1.0 / pitch
+    v_low, v_high = origin[1], origin[1] + rows * pitch
     tip, axis, speed, turning, forward, across = (
         np.empty(3),
         np.empty(3),
@@ -274,6 +275,10 @@ def engagement_in_dexels(
             )
             if k > 0 and (height >= rings[k - 1, 1] or most - bottom >= 2.0 * rings[k - 1, 1]):
                 break
+            # A circle leaves its middle by no more than its radius, ahead by a margin more.
+            middle = tip[1] + height * axis[1]
+            if middle + radius + margin < v_low or middle - radius - margin > v_high:
+                continue
             # Velocity of the axis at the ring's height: the part along the axis plunges, the part
             # across it is the direction of the front.
             rate, square = 0.0, 0.0

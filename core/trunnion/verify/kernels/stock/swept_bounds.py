@@ -11,7 +11,14 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats
-from trunnion.verify.kernels.body import R_MAX, Z_HIGH, Z_LOW
+from trunnion.verify.kernels.body import (
+    CLOSED_FIRST,
+    CLOSED_LAST,
+    R_MAX,
+    Z_HIGH,
+    Z_LOW,
+    radius_at,
+)
 
 # Columns of a span: tip and tool frame (its rows: two axes across, the tool axis) at both ends,
 # then the boxes of what cuts, of all and of the tip's path. Of an arc that runs level about an axis
@@ -38,9 +45,11 @@ EDGE = 1e-5
 """mm that a capsule is wider by: what its rows are rounded by where its axis runs nearly along them."""
 ALONG = 1e-16
 """Squared sine of the angle between a ray and a tool axis below which the ray runs along it: over a metre that is EDGE."""
-CYLINDER = 10
-"""Columns of a cylinder: a point on its axis (3) and the axis's direction (3); the squared radius, negative for no bound; from where to
-where along the axis, from that point; the squared sine of the angle between axis and rays."""
+CONE = 11
+"""Columns of a cone: a point on its axis (3) and the axis's direction (3); its radius at that point, and by how much that grows along the
+axis; from where to where along the axis, from that point; the squared sine of the angle between axis and rays, negative for no bound."""
+FLANK = 0.01
+"""Share of a piece's height over which the slope of its flank at its upper end is measured."""
 
 
 @njit(cache=True, nogil=True)
@@ -134,71 +143,117 @@ def cell_range(
 
 
 @njit(cache=True, nogil=True)
-def swept_cylinder(cylinder: Floats, span: Floats, piece: Floats, turns: bool) -> None:
-    """Write cylinder (CYLINDER,) within which all lies that a piece sweeps in a span; none for an arc that is one span.
+def enclosing_cone(arcs: Floats, piece: Floats) -> tuple[float, float]:
+    """Return radius (mm) at the tip and growth a mm of height of a cone about the tool axis that holds a piece.
+
+    The tangent of its flank at its upper end, as the piece is convex; a cylinder where the piece is not widest there.
+    """
+    first, last = int(piece[CLOSED_FIRST]), int(piece[CLOSED_LAST])
+    height = piece[Z_HIGH] - piece[Z_LOW]
+    r = radius_at(arcs, first, last, piece[Z_HIGH])
+    grows = (r - radius_at(arcs, first, last, piece[Z_HIGH] - FLANK * height)) / max(
+        FLANK * height, EDGE
+    )
+    if r < piece[R_MAX] - EDGE or grows <= 0.0:
+        return piece[R_MAX], 0.0
+    return piece[R_MAX] - grows * piece[Z_HIGH] + EDGE, grows
+
+
+@njit(cache=True, nogil=True)
+def swept_cone(
+    cone: Floats, span: Floats, piece: Floats, radius: float, grows: float, turns: bool
+) -> None:
+    """Write cone (CONE,) within which all lies that a piece, itself within a cone about its axis, sweeps in a span; none
+    for an arc that is one span.
 
     Its axis is the tool's half-way. A point of the tool axis leaves it by half of its way across it at
-    most; along it, the piece reaches as far as it does at one of both times, as its points run straight.
+    most, which between both ends of the piece is no more than a straight line has it; along it, the
+    piece reaches as far as it does at one of both times, as its points run straight.
     """
-    cylinder[6] = -1.0
+    cone[10] = -1.0
     if span[ARC_RADIUS] != 0.0:
         return
     size = 0.0
     for m in range(3):
-        cylinder[3 + m] = span[FRAME0 + 6 + m] + span[FRAME1 + 6 + m]
-        size += cylinder[3 + m] ** 2
+        cone[3 + m] = span[FRAME0 + 6 + m] + span[FRAME1 + 6 + m]
+        size += cone[3 + m] ** 2
     # A tool that turns right over has no axis half-way.
     if size < 1.0:
         return
     size = math.sqrt(size)
     for m in range(3):
-        cylinder[3 + m] /= size
-        cylinder[m] = 0.5 * (span[TIP0 + m] + span[TIP1 + m])
-    way, low, high = 0.0, np.inf, -np.inf
+        cone[3 + m] /= size
+        cone[m] = 0.5 * (span[TIP0 + m] + span[TIP1 + m])
+    low, high, beside, least = np.inf, -np.inf, 0.0, 1.0
+    first, last = 0.0, 0.0
     for end in range(2):
         z, square, forward = piece[Z_LOW] if end == 0 else piece[Z_HIGH], 0.0, 0.0
+        tip, axis = (TIP0, FRAME0 + 6) if end == 0 else (TIP1, FRAME1 + 6)
+        along, lean = 0.0, 0.0
         for m in range(3):
             moved = (
                 span[TIP1 + m] - span[TIP0 + m] + z * (span[FRAME1 + 6 + m] - span[FRAME0 + 6 + m])
             )
             square += moved * moved
-            forward += moved * cylinder[3 + m]
-        way = max(way, square - forward * forward)
-        tip, axis = (TIP0, FRAME0 + 6) if end == 0 else (TIP1, FRAME1 + 6)
-        along, lean = 0.0, 0.0
-        for m in range(3):
-            along += (span[tip + m] - cylinder[m]) * cylinder[3 + m]
-            lean += span[axis + m] * cylinder[3 + m]
+            forward += moved * cone[3 + m]
+            along += (span[tip + m] - cone[m]) * cone[3 + m]
+            lean += span[axis + m] * cone[3 + m]
+        wide = radius + grows * z + 0.5 * math.sqrt(max(square - forward * forward, 0.0))
+        first, last = (wide, last) if end == 0 else (first, wide)
         aside = piece[R_MAX] * math.sqrt(max(1.0 - lean * lean, 0.0))
         low = min(low, along + piece[Z_LOW] * lean - aside)
         high = max(high, along + piece[Z_HIGH] * lean + aside)
+        beside, least = max(beside, abs(along) + aside), min(least, lean)
+    height = piece[Z_HIGH] - piece[Z_LOW]
+    slope = (last - first) / height if height > EDGE else 0.0
+    # What is at a height of the tool is not quite as far along the cone's axis.
+    beside += max(abs(piece[Z_LOW]), abs(piece[Z_HIGH])) * (1.0 / least - 1.0)
     more = (BENT if turns else 0.0) + EDGE
-    cylinder[6] = (piece[R_MAX] + 0.5 * math.sqrt(max(way, 0.0)) + more) ** 2
-    cylinder[7], cylinder[8] = low - more, high + more
-    cylinder[9] = cylinder[3] ** 2 + cylinder[4] ** 2
+    start = first - slope * piece[Z_LOW] if height > EDGE else max(first, last)
+    start += abs(slope) * (beside + more) + more
+    cone[7], cone[8], cone[9] = slope, low - more, high + more
+    cone[6] = start
+    if min(start + slope * cone[8], start + slope * cone[9]) > 0.0:
+        cone[10] = cone[3] ** 2 + cone[4] ** 2
 
 
 @njit(cache=True, nogil=True, inline="always")
-def cylinder_interval(cylinder: Floats, u: float, v: float) -> tuple[float, float]:
-    """Return from where to where (w) the ray at (u, v) is in a cylinder, low > high where it misses it.
+def cone_interval(cone: Floats, u: float, v: float) -> tuple[float, float]:
+    """Return from where to where (w) the ray at (u, v) is in a cone, low > high where it misses it.
 
-    With d the axis, k and z the parts along d in plan and of w, a point's square across the axis is
-    x^2 + y^2 + z^2 - (k + z d_w)^2: a quadratic in z.
+    With d the axis, k a point's part along d in plan and z its part of w, it is s = k + z d_w along the
+    axis, and its square across it is x^2 + y^2 + z^2 - s^2: with that of the radius a quadratic in z,
+    a z^2 - 2 b z + c <= 0.
     """
-    if cylinder[6] < 0.0:
+    if cone[10] < 0.0:
         return -np.inf, np.inf
-    x, y = u - cylinder[0], v - cylinder[1]
-    k, d = x * cylinder[3] + y * cylinder[4], cylinder[5]
-    low, high, beyond = -np.inf, np.inf, x * x + y * y - k * k - cylinder[6]
-    if cylinder[9] > ALONG:
-        root = k * k * d * d - cylinder[9] * beyond
-        if root < 0.0:
-            return np.inf, -np.inf
-        root = math.sqrt(root)
-        low, high = (k * d - root) / cylinder[9] - EDGE, (k * d + root) / cylinder[9] + EDGE
-    elif beyond > 0.0:
-        return np.inf, -np.inf
+    x, y = u - cone[0], v - cone[1]
+    k, d, grows = x * cone[3] + y * cone[4], cone[5], cone[7]
+    low, high = -np.inf, np.inf
     if abs(d) > EDGE:
-        a, b = (cylinder[7] - k) / d, (cylinder[8] - k) / d
-        low, high = max(low, min(a, b)), min(high, max(a, b))
-    return cylinder[2] + low, cylinder[2] + high
+        # Between its ends the cone has no second nappe.
+        p, q = (cone[8] - k) / d, (cone[9] - k) / d
+        low, high = min(p, q), max(p, q)
+    r = cone[6] + grows * k
+    a = cone[10] - grows * grows * d * d
+    b, c = (k + r * grows) * d, x * x + y * y - k * k - r * r
+    if abs(a) <= ALONG:
+        # Nearly linear: the ray runs along the axis of a cylinder, or along a cone's side.
+        if abs(b) <= ALONG:
+            return (np.inf, -np.inf) if c > 0.0 else (cone[2] + low, cone[2] + high)
+        return cone[2] + low, cone[2] + high
+    root = b * b - a * c
+    if root < 0.0:
+        return (np.inf, -np.inf) if a > 0.0 else (cone[2] + low, cone[2] + high)
+    # Both roots without a difference of near numbers.
+    root = b + math.sqrt(root) if b >= 0.0 else b - math.sqrt(root)
+    first = root / a
+    second = c / root if root != 0.0 else first
+    first, second = min(first, second), max(first, second)
+    if a > 0.0:
+        low, high = max(low, first - EDGE), min(high, second + EDGE)
+    elif grows * d > 0.0:
+        low = max(low, second - EDGE)
+    else:
+        high = min(high, first + EDGE)
+    return cone[2] + low, cone[2] + high
