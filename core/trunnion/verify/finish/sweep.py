@@ -358,10 +358,12 @@ def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
     capacity = 4 * (len(of) // kernel.BUCKET + len(used))
     nodes, links, root = (
         np.zeros((capacity, 8)),
-        np.zeros((capacity, 5), np.int64),
+        np.zeros((capacity, 6), np.int64),
         np.zeros(len(used), np.int64),
     )
-    n = kernel.build_pose_bvh(pose, reach, np.append(start, len(of)), used, nodes, links, root)
+    n = kernel.build_pose_bvh(
+        pose, reach, rows[of], np.append(start, len(of)), used, nodes, links, root
+    )
     return SpanTree(
         motion,
         rows,

@@ -70,8 +70,8 @@ class SpanTree(NamedTuple):
     motion (w, 18), move (w,) their rows among the moves, tool (w,). Spans: of (k,) the row of the way,
     low and high (k,) shares of it, reach (k,) mm how far its tip moves from its middle. Nodes: pose
     (m, 8) a position on the axis, the unit axis, and how far (mm) and by what chord of angle (|a - a'|
-    of two axes) poses below it differ; link (m, 5) children or -1, first and last span, tool. root
-    (r,) nodes.
+    of two axes) poses below it differ; link (m, 6) children or -1, first and last span, tool, earliest
+    move. root (r,) nodes.
     """
 
     motion: Floats
@@ -438,7 +438,7 @@ def nearest_span(
     while top > 0 and best > enough:
         top -= 1
         n = nodes[top]
-        if least[top] >= best - bound:
+        if least[top] >= best - bound or tree.link[n, 5] >= before:
             continue
         left, right = tree.link[n, 0], tree.link[n, 1]
         if left >= 0:
@@ -515,12 +515,19 @@ def span_poses(
 
 @njit(cache=True, nogil=True)
 def build_pose_bvh(
-    pose: Floats, reach: Floats, start: Ints, tools: Ints, nodes: Floats, links: Ints, root: Ints
+    pose: Floats,
+    reach: Floats,
+    move: Ints,
+    start: Ints,
+    tools: Ints,
+    nodes: Floats,
+    links: Ints,
+    root: Ints,
 ) -> int:
-    """Fill the nodes (m, 8) and links (m, 5) of trees over spans in their order; return how many nodes
+    """Fill the nodes (m, 8) and links (m, 6) of trees over spans in their order; return how many nodes
     there are.
 
-    start (r + 1,): where the spans of each tree begin; tools (r,) theirs; root (r,) gets the first
+    move (k,) of each span; start (r + 1,): where the spans of each tree begin; tools (r,) theirs; root (r,) gets the first
     node of each. Spans are halved by count: consecutive spans of a program are neighbours in space.
     """
     count = 0
@@ -541,6 +548,7 @@ def build_pose_bvh(
                 last,
                 tools[r],
             )
+            links[n, 5] = move[first:last].min()
             if last - first > BUCKET:
                 middle = (first + last) // 2
                 links[n, 0], links[n, 1] = count, count + 1
