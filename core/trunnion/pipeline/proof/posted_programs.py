@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from trunnion import registry
 from trunnion.findings import BadCall, BadInput, Finding, Severity, error
@@ -24,6 +26,13 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import checked, choose
 from trunnion.shop.kinematics import WorkPositions
 from trunnion.verify.settings import ProofSettings
+
+if TYPE_CHECKING:
+    from trunnion.verify.judge.part_facets import FacetsAhead
+
+
+FACETS_AHEAD = "trunnion.pipeline.proof.facets_ahead"
+"""What the proof alone imports is imported with it: it takes a second."""
 
 
 def program_of(session: Session, setup: Setup) -> Program:
@@ -169,16 +178,26 @@ def prove_session(
     """Return the verdict on the posted text of a session, and that text."""
     if session.process is None or session.blank is None or session.part is None:
         raise BadCall("no toolpaths yet: generate them first")
-    progress.at(0.0, "posting")
-    posted = progress.aside(
-        lambda own: post_texts(session, Header.of(session), context.shop.machines, own)
-    )
-    progress.at(0.05, "reading the text back")
-    programs = progress.aside(lambda own: read_back(session, posted, context.shop.machines, own))
-    errors = errors_before(session)
-    if errors and all(o.suppressed for o in session.process.operations):
-        return held_back(NOTHING_CUT, errors), posted
-    verdict = prove_programs(session, context, programs, progress.part(0.1, 1.0, "proof"))
+    machines = context.shop.machines
+    milling = [
+        p.setup for p in programs_of(session) if not any(s.path.work_turns for s in p.sections)
+    ]
+    with ExitStack() as beside:
+        ahead = None
+        if milling:
+            part = context.machined(session.choices, progress).part
+            own = [machine_of(s, machines) for s in milling]
+            begin = progress.aside(lambda _: importlib.import_module(FACETS_AHEAD).facets_ahead)
+            ahead = beside.enter_context(begin(part, milling[0].frame, own))
+        progress.at(0.0, "posting")
+        posted = progress.aside(lambda own: post_texts(session, Header.of(session), machines, own))
+        progress.at(0.05, "reading the text back")
+        programs = progress.aside(lambda own: read_back(session, posted, machines, own))
+        errors = errors_before(session)
+        if errors and all(o.suppressed for o in session.process.operations):
+            return held_back(NOTHING_CUT, errors), posted
+        share = progress.part(0.1, 1.0, "proof")
+        verdict = prove_programs(session, context, programs, share, ahead)
     return held_back(verdict, errors), posted
 
 
@@ -212,9 +231,13 @@ def held_back(verdict: Verdict, errors: Sequence[Finding]) -> Verdict:
 
 
 def prove_programs(
-    session: Session, context: Context, programs: tuple[Program, ...], progress: Progress
+    session: Session,
+    context: Context,
+    programs: tuple[Program, ...],
+    progress: Progress,
+    ahead: FacetsAhead | None = None,
 ) -> Verdict:
-    """Return the verdict on programs, wherever their motions come from."""
+    """Return the verdict on programs, wherever their motions come from; `ahead` are the part's triangles, where they are begun already."""
     if session.process is None or session.blank is None:
         raise BadCall("no blank or operations: nothing to prove against")
     prove = progress.aside(lambda _: importlib.import_module("trunnion.verify.judge.verdict").prove)
@@ -242,5 +265,6 @@ def prove_programs(
         progress,
         planned_faces=sorted(planned),
         material=context.shop.materials.get(session.process.material),
+        facets_ahead=ahead,
     )
     return verdict

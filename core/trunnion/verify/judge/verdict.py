@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from functools import partial
 
-import numpy as np
-
 from trunnion.findings import Finding, Severity
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
@@ -28,6 +26,7 @@ from trunnion.verify.judge.coverage import covered
 from trunnion.verify.judge.findings import setup_findings
 from trunnion.verify.judge.operations import block_proof, operation_proofs
 from trunnion.verify.judge.overload import load_findings
+from trunnion.verify.judge.part_facets import FacetsAhead, part_facets
 from trunnion.verify.judge.setups import SetupProof, prove_setup, stock_of
 from trunnion.verify.judge.sides import sides_of
 from trunnion.verify.judge.turned import (
@@ -39,7 +38,7 @@ from trunnion.verify.judge.turned import (
     turned_operations,
 )
 from trunnion.verify.machine.limits import limit_findings
-from trunnion.verify.motion import AXIS_LEAN, refuse_turning
+from trunnion.verify.motion import refuse_turning
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.turning.moves import in_order
 
@@ -54,12 +53,14 @@ def prove(
     progress: Progress = NO_PROGRESS,
     planned_faces: Collection[int] = (),
     material: Material | None = None,
+    facets_ahead: FacetsAhead | None = None,
 ) -> Verdict:
     """Return the verdict on the programs of all setups, in the order they are cut: each finds the stock that those before it left.
 
     `tools` are the catalogue's, for what could be reached at all; `machines` those of the programs, one each (without a program: the one
     that the part could be reached on); `planned_faces` the tags that some operation means to finish. Without a material nothing is said
-    of power. Turning comes first, in setups of its own: raises `BadInput` where it comes later or the blank is none of revolution.
+    of power. `facets_ahead` are the triangles of all faces, where they are begun already. Turning comes first, in setups of its own:
+    raises `BadInput` where it comes later or the blank is none of revolution.
     """
     turning = in_order(programs)
     turned: TurnedWork | None = None
@@ -71,7 +72,9 @@ def prove(
         programs, machines = programs[turning:], machines[turning:]
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.1, 0.15)) for f in frames]
-    facets = _facets(programs, part, frames, surfaces, machines, progress.part(0.15, 0.2))
+    facets = part_facets(
+        programs, part, frames, surfaces, machines, progress.part(0.15, 0.2), facets_ahead
+    )
     return prove_surfaces(
         programs,
         surfaces,
@@ -86,28 +89,6 @@ def prove(
         part.backing,
         turned,
     )
-
-
-def _facets(
-    programs: Sequence[Program],
-    part: Part,
-    frames: Sequence[Frame],
-    surfaces: Sequence[Surfaces],
-    machines: Sequence[Machine],
-    progress: Progress,
-) -> list[Facets]:
-    """Return the part's faces as triangles in each frame: all for a tool that leans, or a machine on which one may lean, else those
-    without closed form; none when none is."""
-    leans = any(m.rotary for m in machines) or any(
-        (np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any()
-        for p in programs
-        for s in p.sections
-    )
-    free = {int(s.tag[row]) for s in surfaces for row in s.free}
-    if not leans and not free:
-        return []
-    found = facets_of(part, frames[0], progress=progress, only=None if leans else free)
-    return [found.moved(frames[0], frame) for frame in frames]
 
 
 def prove_surfaces(
