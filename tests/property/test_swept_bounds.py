@@ -47,22 +47,22 @@ def swept(rng, row, piece, arcs):
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from(sorted(EVERY_FORM)), st.booleans())
-def test_what_a_piece_sweeps_is_within_its_cone(seed, form, turns):
+def test_what_a_piece_sweeps_is_within_its_frustum(seed, form, turns):
     rng = np.random.default_rng(seed)
     tips, axes = poses(rng, turns)
     moves = moves_of([leaning_section(EVERY_FORM[form], tips, axes)])
     whole = np.zeros(len(moves), dtype=bool)
     each = spans_each(moves, whole)
     spans = spans_of(moves, np.arange(len(moves)), each, whole)
-    cone, box = np.zeros(kernel.CONE), np.zeros(6)
+    frustum, box = np.zeros(kernel.FRUSTUM), np.zeros(6)
     for axis in range(3):
         for row in spans.along(axis)[rng.integers(0, len(spans.row), 4)]:
             for piece in moves.bodies.of(0):
-                enclosing = kernel.enclosing_cone(moves.bodies.arc, piece)
-                kernel.swept_cone(cone, row, piece, *enclosing, turns)
+                enclosing = kernel.enclosing_frustum(moves.bodies.arc, piece)
+                kernel.swept_frustum(frustum, row, piece, *enclosing, turns)
                 kernel.swept_box(box, row, piece, turns)
                 for u, v, w in swept(rng, row, piece, moves.bodies.arc):
-                    low, high = kernel.cone_interval(cone, u, v)
+                    low, high = kernel.frustum_interval(frustum, u, v)
                     assert low <= w <= high
                     assert (box[:3] <= (u, v, w)).all() and (box[3:] >= (u, v, w)).all()
 
@@ -72,16 +72,18 @@ def test_beside_and_beyond_a_leaning_tool_a_ray_is_not_looked_at():
     moves = moves_of([leaning_section(EVERY_FORM["flat"], [[0, 0, 0], [0.5, 0, 0]], [lean, lean])])
     row = spans_of(moves, np.array([1]), np.array([1]), np.zeros(1, bool)).along(2)[0]
     piece = moves.bodies.of(0)[0]
-    cone, box = np.zeros(kernel.CONE), np.zeros(6)
-    kernel.swept_cone(cone, row, piece, *kernel.enclosing_cone(moves.bodies.arc, piece), False)
+    frustum, box = np.zeros(kernel.FRUSTUM), np.zeros(6)
+    kernel.swept_frustum(
+        frustum, row, piece, *kernel.enclosing_frustum(moves.bodies.arc, piece), False
+    )
     kernel.swept_box(box, row, piece, False)
     radius = piece[R_MAX]
     # Through the tip, the ray meets the end face there, and the flank on the other side.
-    low, high = kernel.cone_interval(cone, 0.25, 0.0)
+    low, high = kernel.frustum_interval(frustum, 0.25, 0.0)
     assert np.allclose([low, high], [0.0, radius / np.sin(0.8)], atol=0.6)
     assert box[5] - box[2] > 2.0 * (high - low)
     # Just beside the flank, though inside of the box.
-    low, high = kernel.cone_interval(cone, 0.25 + radius + 0.3, 0.0)
+    low, high = kernel.frustum_interval(frustum, 0.25 + radius + 0.3, 0.0)
     assert low > high and box[0] < 0.25 + radius < box[3]
 
 
@@ -90,9 +92,11 @@ def test_a_ray_along_the_axis_is_in_or_out_as_a_whole():
     moves = moves_of([leaning_section(EVERY_FORM["ball"], [[0, 0, 0], [1, 0, 0]], [up, up])])
     row = spans_of(moves, np.array([1]), np.array([1]), np.zeros(1, bool)).along(2)[0]
     piece = moves.bodies.of(0)[0]
-    cone = np.zeros(kernel.CONE)
-    kernel.swept_cone(cone, row, piece, *kernel.enclosing_cone(moves.bodies.arc, piece), False)
-    low, high = kernel.cone_interval(cone, 0.5, piece[R_MAX])
+    frustum = np.zeros(kernel.FRUSTUM)
+    kernel.swept_frustum(
+        frustum, row, piece, *kernel.enclosing_frustum(moves.bodies.arc, piece), False
+    )
+    low, high = kernel.frustum_interval(frustum, 0.5, piece[R_MAX])
     assert np.allclose([low, high], piece[[Z_LOW, Z_HIGH]], atol=1e-4)
-    low, high = kernel.cone_interval(cone, 0.5, piece[R_MAX] + 0.6)
+    low, high = kernel.frustum_interval(frustum, 0.5, piece[R_MAX] + 0.6)
     assert low > high

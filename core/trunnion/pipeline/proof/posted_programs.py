@@ -28,10 +28,10 @@ from trunnion.shop.kinematics import WorkPositions
 from trunnion.verify.settings import ProofSettings
 
 if TYPE_CHECKING:
-    from trunnion.verify.judge.part_facets import FacetsAhead
+    from trunnion.verify.judge.part_facets import FacetsFork
 
 
-FACETS_AHEAD = "trunnion.pipeline.proof.facets_ahead"
+FACETS_FORK = "trunnion.pipeline.proof.facets_fork"
 """What the proof alone imports is imported with it: it takes a second."""
 
 
@@ -183,12 +183,12 @@ def prove_session(
         p.setup for p in programs_of(session) if not any(s.path.work_turns for s in p.sections)
     ]
     with ExitStack() as beside:
-        ahead = None
+        fork = None
         if milling:
             part = context.machined(session.choices, progress).part
             own = [machine_of(s, machines) for s in milling]
-            begin = progress.aside(lambda _: importlib.import_module(FACETS_AHEAD).facets_ahead)
-            ahead = beside.enter_context(begin(part, milling[0].frame, own))
+            begin = progress.aside(lambda _: importlib.import_module(FACETS_FORK).facets_fork)
+            fork = beside.enter_context(begin(part, milling[0].frame, own))
         progress.at(0.0, "posting")
         posted = progress.aside(lambda own: post_texts(session, Header.of(session), machines, own))
         progress.at(0.05, "reading the text back")
@@ -197,7 +197,7 @@ def prove_session(
         if errors and all(o.suppressed for o in session.process.operations):
             return held_back(NOTHING_CUT, errors), posted
         share = progress.part(0.1, 1.0, "proof")
-        verdict = prove_programs(session, context, programs, share, ahead)
+        verdict = prove_programs(session, context, programs, share, fork)
     return held_back(verdict, errors), posted
 
 
@@ -235,9 +235,9 @@ def prove_programs(
     context: Context,
     programs: tuple[Program, ...],
     progress: Progress,
-    ahead: FacetsAhead | None = None,
+    fork: FacetsFork | None = None,
 ) -> Verdict:
-    """Return the verdict on programs, wherever their motions come from; `ahead` are the part's triangles, where they are begun already."""
+    """Return the verdict on programs, wherever their motions come from; `fork` are the part's triangles, where they are begun already."""
     if session.process is None or session.blank is None:
         raise BadCall("no blank or operations: nothing to prove against")
     prove = progress.aside(lambda _: importlib.import_module("trunnion.verify.judge.verdict").prove)
@@ -265,6 +265,6 @@ def prove_programs(
         progress,
         planned_faces=sorted(planned),
         material=context.shop.materials.get(session.process.material),
-        facets_ahead=ahead,
+        facets_fork=fork,
     )
     return verdict

@@ -18,7 +18,7 @@ from trunnion.verify.motion import AXIS_LEAN
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FacetsAhead:
+class FacetsFork:
     """The triangles of all faces in a frame, begun before they are asked for; `result` waits for them."""
 
     frame: Frame
@@ -37,7 +37,7 @@ def part_facets(
     surfaces: Sequence[Surfaces],
     machines: Sequence[Machine],
     progress: Progress,
-    ahead: FacetsAhead | None = None,
+    fork: FacetsFork | None = None,
 ) -> list[Facets]:
     """Return the part's faces as triangles in each frame: all for a tool that leans, or a machine on which one may lean, else those
     without closed form; none when none is."""
@@ -49,8 +49,8 @@ def part_facets(
     free = {int(s.tag[row]) for s in surfaces for row in s.free}
     if not leans and not free:
         return []
-    if leans and ahead is not None:
-        found = ahead.result(progress).moved(ahead.frame, frames[0])
+    if leans and fork is not None:
+        found = fork.result(progress).moved(fork.frame, frames[0])
     else:
         found = facets_of(part, frames[0], progress=progress, only=None if leans else free)
     return [found.moved(frames[0], frame) for frame in frames]

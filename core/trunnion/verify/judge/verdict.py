@@ -26,7 +26,7 @@ from trunnion.verify.judge.coverage import covered
 from trunnion.verify.judge.findings import setup_findings
 from trunnion.verify.judge.operations import block_proof, operation_proofs
 from trunnion.verify.judge.overload import load_findings
-from trunnion.verify.judge.part_facets import FacetsAhead, part_facets
+from trunnion.verify.judge.part_facets import FacetsFork, part_facets
 from trunnion.verify.judge.setups import SetupProof, prove_setup, stock_of
 from trunnion.verify.judge.sides import sides_of
 from trunnion.verify.judge.turned import (
@@ -53,13 +53,13 @@ def prove(
     progress: Progress = NO_PROGRESS,
     planned_faces: Collection[int] = (),
     material: Material | None = None,
-    facets_ahead: FacetsAhead | None = None,
+    facets_fork: FacetsFork | None = None,
 ) -> Verdict:
     """Return the verdict on the programs of all setups, in the order they are cut: each finds the stock that those before it left.
 
     `tools` are the catalogue's, for what could be reached at all; `machines` those of the programs, one each (without a program: the one
     that the part could be reached on); `planned_faces` the tags that some operation means to finish. Without a material nothing is said
-    of power. `facets_ahead` are the triangles of all faces, where they are begun already. Turning comes first, in setups of its own:
+    of power. `facets_fork` are the triangles of all faces, where they are begun already. Turning comes first, in setups of its own:
     raises `BadInput` where it comes later or the blank is none of revolution.
     """
     turning = in_order(programs)
@@ -73,7 +73,7 @@ def prove(
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.1, 0.15)) for f in frames]
     facets = part_facets(
-        programs, part, frames, surfaces, machines, progress.part(0.15, 0.2), facets_ahead
+        programs, part, frames, surfaces, machines, progress.part(0.15, 0.2), facets_fork
     )
     return prove_surfaces(
         programs,

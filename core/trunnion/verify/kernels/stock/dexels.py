@@ -58,21 +58,21 @@ from trunnion.verify.kernels.stock.swept_bounds import (
     ALL_BOX,
     ARC_RADIUS,
     CENTRE,
-    CONE,
     COS_HALF,
     CUT_BOX,
     FRAME0,
     FRAME1,
+    FRUSTUM,
     MIDDLE,
     TIP0,
     TIP1,
     capsule_row,
     cell_range,
-    cone_interval,
-    enclosing_cone,
+    enclosing_frustum,
+    frustum_interval,
     swept_box,
     swept_capsule,
-    swept_cone,
+    swept_frustum,
 )
 
 # A ray in the tool frames of a span: foot (3) and direction (3) at the start, what both gain until
@@ -853,9 +853,9 @@ def tridexel_cut_tile(
     to continue. Tiles are independent, so the result doesn't depend on how many run at a time.
     """
     ray, box, capsule, corner = np.zeros(RAY_COLUMNS), np.empty(6), np.empty(5), np.empty(2)
-    cone, enclosing = np.empty(CONE), np.empty((len(piece), 2))
+    frustum, enclosing = np.empty(FRUSTUM), np.empty((len(piece), 2))
     for p in range(len(piece)):
-        enclosing[p, 0], enclosing[p, 1] = enclosing_cone(arcs, piece[p])
+        enclosing[p, 0], enclosing[p, 1] = enclosing_frustum(arcs, piece[p])
     ray[SMALLER] = SHRINK
     # Range of w that holds the tile's material: what lies outside of it is skipped.
     bottom, top = np.inf, -np.inf
@@ -927,8 +927,13 @@ def tridexel_cut_tile(
                     first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
                     limit = _flute_limit(piece, p, p1)
                     swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
-                    swept_cone(
-                        cone, span[s], piece[p], enclosing[p, 0], enclosing[p, 1], ray[TWIST] > 0.0
+                    swept_frustum(
+                        frustum,
+                        span[s],
+                        piece[p],
+                        enclosing[p, 0],
+                        enclosing[p, 1],
+                        ray[TWIST] > 0.0,
                     )
                     j0, j1 = cell_range(box[1], box[4], origin[1], pitch, row, end_row)
                     for j in range(max(j0, resume[3]) if resumes else j0, j1):
@@ -946,7 +951,7 @@ def tridexel_cut_tile(
                             if ray_misses(rays, cell, box[2], box[5]):
                                 continue
                             u = origin[0] + (i + 0.5) * pitch
-                            low, high = cone_interval(cone, u, v)
+                            low, high = frustum_interval(frustum, u, v)
                             low, high = max(low, box[2]), min(high, box[5])
                             if low >= high or ray_misses(rays, cell, low, high):
                                 continue

@@ -45,9 +45,9 @@ EDGE = 1e-5
 """mm that a capsule is wider by: what its rows are rounded by where its axis runs nearly along them."""
 ALONG = 1e-16
 """Squared sine of the angle between a ray and a tool axis below which the ray runs along it: over a metre that is EDGE."""
-CONE = 11
-"""Columns of a cone: a point on its axis (3) and the axis's direction (3); its radius at that point, and by how much that grows along the
-axis; from where to where along the axis, from that point; the squared sine of the angle between axis and rays, negative for no bound."""
+FRUSTUM = 11
+"""Columns of a frustum: a point on its axis (3) and the axis's direction (3); its radius at that point, and by how much that grows along
+the axis; from where to where along it, from that point; the squared sine of the angle between axis and rays, negative for no bound."""
 FLANK = 0.01
 """Share of a piece's height over which the slope of its flank at its upper end is measured."""
 
@@ -143,8 +143,8 @@ def cell_range(
 
 
 @njit(cache=True, nogil=True)
-def enclosing_cone(arcs: Floats, piece: Floats) -> tuple[float, float]:
-    """Return radius (mm) at the tip and growth a mm of height of a cone about the tool axis that holds a piece.
+def enclosing_frustum(arcs: Floats, piece: Floats) -> tuple[float, float]:
+    """Return radius (mm) at the tip and growth a mm of height of a frustum about the tool axis that holds a piece.
 
     The tangent of its flank at its upper end, as the piece is convex; a cylinder where the piece is not widest there.
     """
@@ -160,30 +160,30 @@ def enclosing_cone(arcs: Floats, piece: Floats) -> tuple[float, float]:
 
 
 @njit(cache=True, nogil=True)
-def swept_cone(
-    cone: Floats, span: Floats, piece: Floats, radius: float, grows: float, turns: bool
+def swept_frustum(
+    frustum: Floats, span: Floats, piece: Floats, radius: float, grows: float, turns: bool
 ) -> None:
-    """Write cone (CONE,) within which all lies that a piece, itself within a cone about its axis, sweeps in a span; none
+    """Write frustum (FRUSTUM,) within which all lies that a piece, itself within a frustum about its axis, sweeps in a span; none
     for an arc that is one span.
 
     Its axis is the tool's half-way. A point of the tool axis leaves it by half of its way across it at
     most, which between both ends of the piece is no more than a straight line has it; along it, the
     piece reaches as far as it does at one of both times, as its points run straight.
     """
-    cone[10] = -1.0
+    frustum[10] = -1.0
     if span[ARC_RADIUS] != 0.0:
         return
     size = 0.0
     for m in range(3):
-        cone[3 + m] = span[FRAME0 + 6 + m] + span[FRAME1 + 6 + m]
-        size += cone[3 + m] ** 2
+        frustum[3 + m] = span[FRAME0 + 6 + m] + span[FRAME1 + 6 + m]
+        size += frustum[3 + m] ** 2
     # A tool that turns right over has no axis half-way.
     if size < 1.0:
         return
     size = math.sqrt(size)
     for m in range(3):
-        cone[3 + m] /= size
-        cone[m] = 0.5 * (span[TIP0 + m] + span[TIP1 + m])
+        frustum[3 + m] /= size
+        frustum[m] = 0.5 * (span[TIP0 + m] + span[TIP1 + m])
     low, high, beside, least = np.inf, -np.inf, 0.0, 1.0
     first, last = 0.0, 0.0
     for end in range(2):
@@ -195,9 +195,9 @@ def swept_cone(
                 span[TIP1 + m] - span[TIP0 + m] + z * (span[FRAME1 + 6 + m] - span[FRAME0 + 6 + m])
             )
             square += moved * moved
-            forward += moved * cone[3 + m]
-            along += (span[tip + m] - cone[m]) * cone[3 + m]
-            lean += span[axis + m] * cone[3 + m]
+            forward += moved * frustum[3 + m]
+            along += (span[tip + m] - frustum[m]) * frustum[3 + m]
+            lean += span[axis + m] * frustum[3 + m]
         wide = radius + grows * z + 0.5 * math.sqrt(max(square - forward * forward, 0.0))
         first, last = (wide, last) if end == 0 else (first, wide)
         aside = piece[R_MAX] * math.sqrt(max(1.0 - lean * lean, 0.0))
@@ -206,45 +206,45 @@ def swept_cone(
         beside, least = max(beside, abs(along) + aside), min(least, lean)
     height = piece[Z_HIGH] - piece[Z_LOW]
     slope = (last - first) / height if height > EDGE else 0.0
-    # What is at a height of the tool is not quite as far along the cone's axis.
+    # What is at a height of the tool is not quite as far along the frustum's axis.
     beside += max(abs(piece[Z_LOW]), abs(piece[Z_HIGH])) * (1.0 / least - 1.0)
     more = (BENT if turns else 0.0) + EDGE
     start = first - slope * piece[Z_LOW] if height > EDGE else max(first, last)
     start += abs(slope) * (beside + more) + more
-    cone[7], cone[8], cone[9] = slope, low - more, high + more
-    cone[6] = start
-    if min(start + slope * cone[8], start + slope * cone[9]) > 0.0:
-        cone[10] = cone[3] ** 2 + cone[4] ** 2
+    frustum[7], frustum[8], frustum[9] = slope, low - more, high + more
+    frustum[6] = start
+    if min(start + slope * frustum[8], start + slope * frustum[9]) > 0.0:
+        frustum[10] = frustum[3] ** 2 + frustum[4] ** 2
 
 
 @njit(cache=True, nogil=True, inline="always")
-def cone_interval(cone: Floats, u: float, v: float) -> tuple[float, float]:
-    """Return from where to where (w) the ray at (u, v) is in a cone, low > high where it misses it.
+def frustum_interval(frustum: Floats, u: float, v: float) -> tuple[float, float]:
+    """Return from where to where (w) the ray at (u, v) is in a frustum, low > high where it misses it.
 
     With d the axis, k a point's part along d in plan and z its part of w, it is s = k + z d_w along the
     axis, and its square across it is x^2 + y^2 + z^2 - s^2: with that of the radius a quadratic in z,
     a z^2 - 2 b z + c <= 0.
     """
-    if cone[10] < 0.0:
+    if frustum[10] < 0.0:
         return -np.inf, np.inf
-    x, y = u - cone[0], v - cone[1]
-    k, d, grows = x * cone[3] + y * cone[4], cone[5], cone[7]
+    x, y = u - frustum[0], v - frustum[1]
+    k, d, grows = x * frustum[3] + y * frustum[4], frustum[5], frustum[7]
     low, high = -np.inf, np.inf
     if abs(d) > EDGE:
-        # Between its ends the cone has no second nappe.
-        p, q = (cone[8] - k) / d, (cone[9] - k) / d
+        # Between its ends the frustum has no second nappe.
+        p, q = (frustum[8] - k) / d, (frustum[9] - k) / d
         low, high = min(p, q), max(p, q)
-    r = cone[6] + grows * k
-    a = cone[10] - grows * grows * d * d
+    r = frustum[6] + grows * k
+    a = frustum[10] - grows * grows * d * d
     b, c = (k + r * grows) * d, x * x + y * y - k * k - r * r
     if abs(a) <= ALONG:
-        # Nearly linear: the ray runs along the axis of a cylinder, or along a cone's side.
+        # Nearly linear: the ray runs along the axis of a cylinder, or along a frustum's side.
         if abs(b) <= ALONG:
-            return (np.inf, -np.inf) if c > 0.0 else (cone[2] + low, cone[2] + high)
-        return cone[2] + low, cone[2] + high
+            return (np.inf, -np.inf) if c > 0.0 else (frustum[2] + low, frustum[2] + high)
+        return frustum[2] + low, frustum[2] + high
     root = b * b - a * c
     if root < 0.0:
-        return (np.inf, -np.inf) if a > 0.0 else (cone[2] + low, cone[2] + high)
+        return (np.inf, -np.inf) if a > 0.0 else (frustum[2] + low, frustum[2] + high)
     # Both roots without a difference of near numbers.
     root = b + math.sqrt(root) if b >= 0.0 else b - math.sqrt(root)
     first = root / a
@@ -256,4 +256,4 @@ def cone_interval(cone: Floats, u: float, v: float) -> tuple[float, float]:
         low = max(low, second - EDGE)
     else:
         high = min(high, first + EDGE)
-    return cone[2] + low, cone[2] + high
+    return frustum[2] + low, frustum[2] + high

@@ -11,13 +11,13 @@ from trunnion.model.material import Machine
 from trunnion.part.part import Part
 from trunnion.part.shape.facets import Facets, facets_of
 from trunnion.progress import Progress
-from trunnion.verify.judge.part_facets import FacetsAhead, may_lean
+from trunnion.verify.judge.part_facets import FacetsFork, may_lean
 
 
 @contextmanager
-def facets_ahead(
+def facets_fork(
     part: Part, frame: Frame, machines: Sequence[Machine]
-) -> Iterator[FacetsAhead | None]:
+) -> Iterator[FacetsFork | None]:
     """Begin to make the triangles of all faces, in a frame, in a copy of this process; it is stopped where the block ends before it.
 
     None where no tool may lean on the machines, or where this process can't be copied: the proof makes what it needs itself.
@@ -31,6 +31,6 @@ def facets_ahead(
 
     copy = Fork(make)
     try:
-        yield FacetsAhead(frame, copy.result)
+        yield FacetsFork(frame, copy.result)
     finally:
         copy.stop()

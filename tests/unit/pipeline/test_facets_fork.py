@@ -6,7 +6,7 @@ import pickle
 
 import pytest
 
-import trunnion.pipeline.proof.facets_ahead as ahead
+import trunnion.pipeline.proof.facets_fork as facets_fork
 import trunnion.pipeline.proof.posted_programs as proof
 from samples import box_shape, written
 from trunnion import forks
@@ -35,7 +35,7 @@ def begun(monkeypatch):
         made.append(Fork(work))
         return made[-1]
 
-    monkeypatch.setattr(ahead, "Fork", counted)
+    monkeypatch.setattr(facets_fork, "Fork", counted)
     return made
 
 
@@ -44,7 +44,7 @@ def test_the_verdict_is_the_same_as_without_a_copy(planned, begun, monkeypatch):
     engine, session = planned
     beside = engine.run(session, "verify").verdict
     assert len(begun) == 1 and begun[0].is_done()
-    monkeypatch.setattr(ahead, "copies", lambda: 0)
+    monkeypatch.setattr(facets_fork, "copies", lambda: 0)
     alone = engine.run(session, "verify").verdict
     assert len(begun) == 1
     assert pickle.dumps(beside) == pickle.dumps(alone)
@@ -68,7 +68,7 @@ def test_a_face_that_can_not_be_meshed_is_told(planned, begun, monkeypatch):
         raise BadInput("face 3 can't be meshed")
 
     engine, session = planned
-    monkeypatch.setattr(ahead, "facets_of", refused)
+    monkeypatch.setattr(facets_fork, "facets_of", refused)
     with pytest.raises(BadInput, match="face 3 can't be meshed"):
         proof.prove_session(session, engine.context, proof.NO_PROGRESS)
     assert begun[0].is_done()
