@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from leaning_tools import EVERY_FORM, leaning_section
+from leaning_tools import EVERY_FORM, cutter, leaning_section
 from trunnion.verify.kernels.body import (
     CLOSED_FIRST,
     CLOSED_LAST,
@@ -65,6 +65,18 @@ def test_what_a_piece_sweeps_is_within_its_frustum(seed, form, turns):
                     low, high = kernel.frustum_interval(frustum, u, v)
                     assert low <= w <= high
                     assert (box[:3] <= (u, v, w)).all() and (box[3:] >= (u, v, w)).all()
+
+
+def test_a_flank_that_bends_up_to_its_top_is_within_its_frustum():
+    tool = cutter("form", flute=12.0, outline=((1.0, 0.0, 0.1), (5.0, 12.0, 0.0)))
+    up = np.array([0.0, 0.0, 1.0])
+    moves = moves_of([leaning_section(tool, [[0, 0, 0], [1, 0, 0]], [up, up])])
+    piece, arcs = moves.bodies.of(0)[0], moves.bodies.arc
+    start, grows = kernel.enclosing_frustum(arcs, piece)
+    assert 0.0 < grows < 0.3
+    ends = int(piece[CLOSED_FIRST]), int(piece[CLOSED_LAST])
+    for h in np.linspace(piece[Z_LOW], piece[Z_HIGH], 5001):
+        assert radius_at(arcs, *ends, h) <= start + grows * h
 
 
 def test_beside_and_beyond_a_leaning_tool_a_ray_is_not_looked_at():

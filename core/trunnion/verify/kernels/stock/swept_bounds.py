@@ -42,7 +42,7 @@ SPAN_COLUMNS = 54
 BENT = 0.01
 """mm that boxes are wider by where a tool turns: its points leave the straight ways between both ends by a few micrometres."""
 EDGE = 1e-5
-"""mm that a capsule is wider by: what its rows are rounded by where its axis runs nearly along them."""
+"""mm that capsules and frusta are wider by: what is rounded where their axes run nearly along rows or rays."""
 ALONG = 1e-16
 """Squared sine of the angle between a ray and a tool axis below which the ray runs along it: over a metre that is EDGE."""
 FRUSTUM = 11
@@ -146,17 +146,20 @@ def cell_range(
 def enclosing_frustum(arcs: Floats, piece: Floats) -> tuple[float, float]:
     """Return radius (mm) at the tip and growth a mm of height of a frustum about the tool axis that holds a piece.
 
-    The tangent of its flank at its upper end, as the piece is convex; a cylinder where the piece is not widest there.
+    The line through its flank near its upper end, as the piece is convex; a cylinder where the piece is not widest there.
+    Between both positions of the line a flank that bends is outside of it by twice as much as half-way, at most.
     """
     first, last = int(piece[CLOSED_FIRST]), int(piece[CLOSED_LAST])
-    height = piece[Z_HIGH] - piece[Z_LOW]
-    r = radius_at(arcs, first, last, piece[Z_HIGH])
-    grows = (r - radius_at(arcs, first, last, piece[Z_HIGH] - FLANK * height)) / max(
-        FLANK * height, EDGE
+    top, step = piece[Z_HIGH], max(FLANK * (piece[Z_HIGH] - piece[Z_LOW]), EDGE)
+    r, halfway, below = (
+        radius_at(arcs, first, last, top),
+        radius_at(arcs, first, last, top - 0.5 * step),
+        radius_at(arcs, first, last, top - step),
     )
-    if r < piece[R_MAX] - EDGE or grows <= 0.0:
+    if r < piece[R_MAX] - EDGE or below < 0.0 or below >= r:
         return piece[R_MAX], 0.0
-    return piece[R_MAX] - grows * piece[Z_HIGH] + EDGE, grows
+    grows, bulge = (r - below) / step, 2.0 * max(halfway - 0.5 * (r + below), 0.0)
+    return piece[R_MAX] - grows * top + bulge + EDGE, grows
 
 
 @njit(cache=True, nogil=True)
