@@ -14,11 +14,12 @@ from flat_parts import operation
 from milling import Milled, cutting, mill
 from surface_drives import grid
 from trunnion.geometry.frame import WORLD
+from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Box
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.setup import Setup
 from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, LAYER
-from trunnion.plan.freeform.roughing.layers import layer_groups, plane_drive_of
+from trunnion.plan.freeform.roughing.layers import layer_groups, plane_drive_of, without_rims
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.plane.rough import RoughSettings, rough
@@ -86,3 +87,47 @@ def test_groups_are_as_even_as_their_heights_allow(depth):
     heights = [-1.5 * n for n in range(1, 13)]
     thick = [above - group[-1] for above, group in layer_groups(0.0, heights, depth)]
     assert max(thick) - min(thick) <= 1.5 + 1e-9
+
+
+@pytest.mark.parametrize("cells", [2, 3, 4, 8])
+def test_a_thin_plate_is_cut_where_it_stands_by_itself_and_not_as_the_rim_of_a_wall(cells):
+    cell, wall = 0.5, Region.rectangle(20.0, 20.0, 40.0, 40.0)
+    free = Region.rectangle(-50.0, -50.0, 110.0, 110.0).minus(wall)
+    plate = Region.rectangle(0.0, 0.0, 60.0, cells * cell)
+    rim = wall.offset(2.0 * cell)
+    found = without_rims(plate.union(rim), free, cell)
+    assert found.minus(plate).area < 1e-6
+    # Round corners of the openings alone are left.
+    assert plate.minus(found).area < 4.0 * (2.0 * cell) ** 2
+
+
+def test_stock_beside_a_wall_is_cut_where_it_is_wider_than_a_rim():
+    cell, wall = 0.5, Region.rectangle(0.0, 0.0, 60.0, 5.0)
+    free = Region.rectangle(-50.0, -50.0, 110.0, 110.0).minus(wall)
+    for width, cut in ((1.0, False), (3.0, True)):
+        high = Region.rectangle(0.0, 0.0, 60.0, 5.0 + width)
+        assert bool(without_rims(high, free, cell)) is cut
+
+
+def test_a_plate_under_what_was_roughed_from_above_is_cut_from_the_side_layer_by_layer():
+    """Seen from the side, a plate that another direction left stands all the way down: no layer may go by it."""
+    space = SurfaceSpace(
+        part=None,
+        blank=BLANK,
+        setup=SETUP,
+        direction=(0.0, 0.0, 1.0),
+        skin=grid(hill, high=(60.0, 60.0)),
+        low=LOW,
+        high=HIGH,
+    )
+    choices = {ALLOWANCE: KEPT, BOTTOM: 2.0 + KEPT, CELL: 0.5, LAYER: STEP}
+    made = replace(operation("rough", "group-01", CUTTER, choices), data=cutting(DEEP, 3.0))
+    uncut = PlanningStock.of(BLANK, SETUP)
+    heights = np.full_like(uncut.heights, 0.0)
+    heights[:3] = uncut.heights[:3]
+    drive = plane_drive_of(made, space, replace(uncut, heights=heights), NO_PROGRESS)
+    plate = Region.rectangle(0.0, 0.0, 1.5, 60.0)
+    groups = {level.top for level in drive.levels}
+    for top in groups:
+        wanted = [level.wanted for level in drive.levels if level.top == top]
+        assert plate.minus(wanted[0]).area < 0.05 * plate.area

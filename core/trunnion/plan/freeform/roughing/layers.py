@@ -190,12 +190,8 @@ def layers_of(
         for z, next_up in pairwise([*reversed(steps), above]):
             progress.check()
             free = free_at(z)
-            # Along walls the field keeps a strip of cells high that the cutter has been at: too narrow to be stock.
-            wanted = (
-                free.intersect(blank)
-                .intersect(stock_over(stock, z, next_up, box))
-                .opened(0.5 * RIM * stock.cell)
-            )
+            high = stock_over(stock, z, next_up, box)
+            wanted = without_rims(high, free, stock.cell).intersect(blank)
             if cleared and wanted:
                 wanted = wanted.minus(cleared).opened(HAIR)
                 # What is left goes on into what is cleared, so that it is entered from there.
@@ -272,7 +268,7 @@ def level_faces(space: SurfaceSpace) -> list[float]:
 
 
 def stock_over(stock: StockHeights, z: float, above: float, box: tuple[Floats, Floats]) -> Region:
-    """Return where the stock in a box is over a layer by more than is worth nothing, rims beside walls, never certain, left out."""
+    """Return where the stock in a box is over a layer by more than is worth nothing."""
     heights, corner = _cells_in(stock, *box)
     higher = heights > z + WORTH * (above - z)
     if not higher.any():
@@ -282,8 +278,20 @@ def stock_over(stock: StockHeights, z: float, above: float, box: tuple[Floats, F
     # Each cell of the stock as a position of a grid: low where it stands high.
     most = float(heights.max())
     grid = np.pad(np.where(higher, most - 1.0, most + 1.0), 1, constant_values=most + 1.0)
-    found = region_below(grid, corner - 0.5 * stock.cell, stock.cell, most, LEAST_STRAIGHT)
-    return found.opened(RIM * stock.cell)
+    return region_below(grid, corner - 0.5 * stock.cell, stock.cell, most, LEAST_STRAIGHT)
+
+
+def without_rims(high: Region, free: Region, cell: float) -> Region:
+    """Return what of an area in which stock in cells of a side (mm) is high a layer cuts that keeps to a `free` area.
+
+    Along walls, which bound the free area, the field keeps a strip of cells high that the cutter has been at. Away from them what is as
+    narrow is stock: a thin plate that nothing else would cut, and that a deeper layer's neck would meet.
+    """
+    rim = RIM * cell
+    wide = high.opened(rim)
+    narrow = high.minus(wide).intersect(free.offset(-2.0 * rim)).opened(0.5 * cell)
+    plates = tuple(piece for piece in narrow.pieces if piece.area > (2.0 * rim) ** 2)
+    return wide.intersect(free).opened(0.5 * rim).union(Region(plates))
 
 
 def _cells_in(stock: StockHeights, low: Floats, high: Floats) -> tuple[Floats, Floats]:
