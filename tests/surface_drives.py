@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from trunnion.geometry.frame import WORLD
@@ -9,8 +11,10 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Box
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
+from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from verify_tools import bull
 
 DATA = CuttingData(
     speed=200.0,
@@ -96,3 +100,13 @@ def driven(skin, faces=(1,), exact=(), allowance=0.0, height=0.004, top=20.0, ea
             Box(frame=WORLD, low=low, high=high, material="7050-T7451", density=2.83), setup
         ),
     )
+
+
+def roughed(stock, skin, left=0.5):
+    """Return the stock after roughing that came everywhere and left some mm over a skin."""
+    rows = np.argwhere(np.ones(stock.heights.shape, dtype=bool))
+    centres = stock.corner + (rows + 0.5) * stock.cell
+    fine = lower_side(bull(2.0, 1.0)())
+    heights = skin.drop.drop(centres, fine, float(skin.points[:, 2].min())) + left
+    heights = np.minimum(stock.heights, heights.reshape(stock.heights.shape))
+    return replace(stock, heights=heights, digest="roughed")

@@ -124,7 +124,13 @@ class PathJob:
             scene.sides.cut_over(rolling, flat, cutter, progress)
         else:
             setup = self.driven.setup
-            changed = scene.sides.cut(setup, turned(made.path, own, setup.frame), cutter, progress)
+            changed = scene.sides.cut(
+                setup,
+                turned(made.path, own, setup.frame),
+                cutter,
+                progress,
+                remember=self.driven.allowance > 0.0,
+            )
         scene.leave(cutter, made)
         return changed
 

@@ -1,7 +1,8 @@
 """Toolpaths of a setup's operations in their order, those of leaning tools several at a time.
 
-A leaning tool takes nothing off the planner's stock, so that the next operations need not wait for its path: it is made in a copy of the
-process. All that depends on the order (the pose that a tool is left in, the stock) is seen to when paths are taken over, in their order.
+A leaning tool takes nothing off the planner's fields of heights, so that the next operations need not wait for its path: it is made in a
+copy of the process. Leaning tools that leave nothing wait for those that leave an allowance, whose cuts they are told. All that depends on
+the order (the pose that a tool is left in, the stock) is seen to when paths are taken over, in their order.
 """
 
 from __future__ import annotations
@@ -63,6 +64,7 @@ class PathJobs:
         self._copies: list[Fork[Planned]] = []
         self._is_taking_over = False
         scene.before_laid = self.take_over
+        scene.before_leaning = self._take_over_allowances
 
     def __enter__(self) -> PathJobs:
         return self
@@ -109,6 +111,11 @@ class PathJobs:
                 changed |= self._take(begun)
         finally:
             self._is_taking_over = False
+
+    def _take_over_allowances(self) -> None:
+        """Wait for all paths that are begun where one of them leaves an allowance, and take them over."""
+        if any(b.prepared is not None and b.prepared.driven.allowance > 0.0 for b in self._begun):
+            self.take_over()
 
     def _leans(self, operation: Operation) -> bool:
         """Return whether the tool of an operation leans from its setup's or its cutting frame's z."""

@@ -41,6 +41,10 @@ class RemainingStockQuery(Protocol):
     """Material that stands, as positions (`toolpath.stock.remaining.RemainingStock`)."""
 
     @property
+    def cut(self) -> str:
+        """A digest of what leaning tools have cut of it, empty where that is nothing."""
+
+    @property
     def is_empty(self) -> bool:
         """Whether nothing stands."""
 

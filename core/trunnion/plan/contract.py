@@ -124,8 +124,9 @@ class Scene(Protocol):
     def stock(self, setup: Setup) -> StockHeights:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
 
-    def remaining_stock(self, frame: Frame) -> RemainingStockQuery:
-        """Return what stands at this moment by all directions together, in a frame."""
+    def remaining_stock(self, frame: Frame, *, leaning: bool = False) -> RemainingStockQuery:
+        """Return what stands at this moment by all directions together, in a frame; with `leaning` without what leaning tools have cut that
+        left an allowance."""
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""
@@ -163,7 +164,8 @@ class OperationDrive:
     the drive from others: the drive itself, or its digest, with all else that its queries depend on. `findings` say what was cut off it.
 
     A drive over a `rolling` ground lies in the plane of its development instead, and so does the path until it is rolled onto it. `cell`:
-    side (mm) of the cells that the stock is known in, where it need not be as fine as usual (0).
+    side (mm) of the cells that the stock is known in, where it need not be as fine as usual (0). `allowance`: mm that a leaning tool leaves
+    for later ones, which are told what it has cut; 0 where it leaves nothing.
     """
 
     setup: Setup
@@ -172,6 +174,7 @@ class OperationDrive:
     findings: tuple[Finding, ...] = ()
     rolling: RollingGround | None = None
     cell: float = 0.0
+    allowance: float = 0.0
 
 
 class Planner(Protocol):

@@ -13,6 +13,7 @@ from trunnion.findings import Cancelled, Refused, info
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.pipeline import Engine, path_jobs
 from trunnion.pipeline.toolpaths import make_paths
+from trunnion.plan.contract import planner_for
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import settings
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
@@ -187,3 +188,46 @@ def test_paths_that_are_still_true_are_kept(made) -> None:
     first = made(names)
     again = made(names, kept=first)
     assert all(a is b for a, b in zip(first, again, strict=True))
+
+
+@pytest.fixture
+def cuts_known(routed, monkeypatch):
+    """Has all leave an allowance but those that `finish`, which ask what the others have cut: returns what they were told, by operation."""
+    planner = type(planner_for(routed[1].recognition.family))
+    drive, told_cuts = planner.drive, {}
+
+    def allowed(self, operation, needs, scene, progress):
+        driven = drive(self, operation, needs, scene, progress)
+        if operation.strategy != "finish":
+            return replace(driven, allowance=0.3)
+        stock = scene.remaining_stock(driven.setup.frame, leaning=True)
+        told_cuts[operation.id] = stock.cut
+        return replace(driven, identity=(driven.identity, stock.cut))
+
+    @strategy(settings=NoSettings, tool_axis=leaning_axis)
+    def finish(drive, tool, data, stock, setup, settings, progress):
+        return planned(stock, setup, LEANT, 1.5)
+
+    monkeypatch.setitem(OWN, "finish", finish)
+    monkeypatch.setattr(planner, "drive", allowed, raising=True)
+    return told_cuts
+
+
+@can_copy
+def test_a_leaning_tool_that_leaves_nothing_knows_what_those_before_it_have_cut(made, cuts_known):
+    names = ["lean", "lean", "finish", "finish", "lean", "finish"]
+    beside, known = made(names), dict(cuts_known)
+    turn = made(names, beside=0)
+    assert cuts_known == known and [p.key for p in beside] == [p.key for p in turn]
+    # The third allowance is cut before the last one is asked for.
+    assert known["own-2"] == known["own-3"] != known["own-5"] and all(known.values())
+    assert len({told(p, "test.process") for p in beside[:2]}) == 2
+
+
+@can_copy
+def test_its_path_is_stale_when_what_they_cut_is_another(made, cuts_known):
+    first = made(["lean", "finish"])
+    assert made(["lean", "finish"], kept=first)[1] is first[1]
+    again = made(["lean", "lean", "finish"])
+    other = replace(again[2], operation="own-1")
+    assert made(["lean", "finish"], kept=(first[0], other))[1].key == first[1].key != other.key

@@ -1,10 +1,11 @@
-"""Height fields (z-maps) for planning: lowered under a cutter's moves, and the greatest height under a
-straight move.
+"""Height fields (z-maps) for planning: lowered under a cutter's moves, the greatest height under a
+straight move, and whether a body meets any of them.
 
 A field is (nx, ny) float64 heights of square cells of side `cell`; cell (i, j) spans x from `x0 + i
 cell` and y from `y0 + j cell`. Both kernels err on the side of material: a cell is lowered only as
 far as the cutter covers all of it, and counts as touched when any of it may be. mm, the setup
 frame, tool axis +z.
+`zmap_meets` looks at the cells' centres alone.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import math
 import numpy as np
 from numba import njit
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 
 HALF_DIAGONAL = math.sqrt(0.5)
 
@@ -116,6 +117,46 @@ def zmap_highest(
     return top
 
 
+@njit(cache=True, nogil=True)
+def zmap_meets(
+    heights: Floats, x0: float, y0: float, cell: float, tips: Floats, rows: Floats, met: Bools
+) -> None:
+    """Fill `met` (k,) with whether a body of cones [z0, r0, z1, r1] (r, 4) over upright tips (k, 3) comes lower than a field at the
+    centre of any cell."""
+    nx, ny = heights.shape
+    widest, lowest = 0.0, np.inf
+    for r in range(len(rows)):
+        widest, lowest = max(widest, rows[r, 1], rows[r, 3]), min(lowest, rows[r, 0])
+    for k in range(len(tips)):
+        met[k] = False
+        x, y, z = tips[k, 0], tips[k, 1], tips[k, 2]
+        i0 = max(int(math.ceil((x - widest - x0) / cell - 0.5)), 0)
+        i1 = min(int(math.floor((x + widest - x0) / cell - 0.5)) + 1, nx)
+        j0 = max(int(math.ceil((y - widest - y0) / cell - 0.5)), 0)
+        j1 = min(int(math.floor((y + widest - y0) / cell - 0.5)) + 1, ny)
+        for i in range(i0, i1):
+            if met[k]:
+                break
+            px = x0 + (i + 0.5) * cell - x
+            for j in range(j0, j1):
+                above = heights[i, j] - z
+                if above <= lowest:
+                    continue
+                away = math.hypot(px, y0 + (j + 0.5) * cell - y)
+                for r in range(len(rows)):
+                    low, near, high, far = rows[r, 0], rows[r, 1], rows[r, 2], rows[r, 3]
+                    # The lowest place of the cone that far off its axis.
+                    if away >= near:
+                        if away >= far:
+                            continue
+                        low += (high - low) * (away - near) / (far - near)
+                    if above > low:
+                        met[k] = True
+                        break
+                if met[k]:
+                    break
+
+
 def zmap_cut_reference(
     heights: Floats,
     x0: float,
@@ -146,6 +187,23 @@ def zmap_highest_reference(
         _distance(_centres(heights, x0, y0, cell), start, end) < radius + cell * HALF_DIAGONAL
     )
     return float(heights[is_covered].max(initial=-np.inf))
+
+
+def zmap_meets_reference(
+    heights: Floats, x0: float, y0: float, cell: float, tips: Floats, rows: Floats, met: Bools
+) -> None:
+    """Plain numpy form of `zmap_meets`: every cell for every pose and cone."""
+    centres = _centres(heights, x0, y0, cell)
+    for k in range(len(tips)):
+        away, above = np.linalg.norm(centres - tips[k, :2], axis=-1), heights - tips[k, 2]
+        met[k] = False
+        for low, near, high, far in rows.tolist():
+            share = np.clip((away - near) / (far - near), 0.0, 1.0) if far > near else 0.0
+            met[k] |= bool(
+                ((away < max(near, far)) & (above > low + share * (high - low))).any()
+                if far >= near
+                else ((away < near) & (above > low)).any()
+            )
 
 
 def _centres(heights: Floats, x0: float, y0: float, cell: float) -> Floats:

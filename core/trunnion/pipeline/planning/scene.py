@@ -84,6 +84,8 @@ class SetupScene:
     tool: Tool | None = None
     before_laid: Callable[[], None] | None = None
     """Called before anybody looks at `laid`: some paths may still be made."""
+    before_leaning: Callable[[], None] | None = None
+    """Called before anybody asks what leaning tools have cut."""
     _laid: list[tuple[Tool, OperationPath]] = field(default_factory=list)
     _made: dict[Hashable, Any] = field(default_factory=dict)
 
@@ -107,9 +109,12 @@ class SetupScene:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
         return self.sides.seen(setup)
 
-    def remaining_stock(self, frame: Frame) -> RemainingStock:
-        """Return what stands at this moment by all directions together, in a frame."""
-        return self.sides.remaining_stock(frame)
+    def remaining_stock(self, frame: Frame, *, leaning: bool = False) -> RemainingStock:
+        """Return what stands at this moment by all directions together, in a frame; with `leaning` without what leaning tools have cut that
+        left an allowance."""
+        if leaning and self.before_leaning is not None:
+            self.before_leaning()
+        return self.sides.remaining_stock(frame, leaning=leaning)
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""

@@ -8,7 +8,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool, rotating
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.freeform.frames import Direction
-from trunnion.plan.freeform.keys import EARLIER, UPRIGHT_EARLIER
+from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, UPRIGHT_EARLIER, number
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.progress import Progress
 
@@ -42,15 +42,21 @@ def surface_driven(
     space = space_from(operation.direction, tolerance.SKIN_CHORD, scene, progress)
     around = scene.context.around(scene.setup, space.frame, space.skin, progress)
     earlier, upright = (_named(operation, key, scene) for key in (EARLIER, UPRIGHT_EARLIER))
-    remaining_stock = scene.remaining_stock(space.frame) if needs.leans else None
+    allowance = number(operation, ALLOWANCE) if needs.leans else 0.0
+    remaining_stock, cut = None, ""
+    if needs.leans:
+        # What leaves an allowance waits for nothing: paths of leaning tools are made beside each other.
+        remaining_stock = scene.remaining_stock(space.frame, leaning=allowance <= 0.0)
+        cut = remaining_stock.cut
     drive = space.drive_of(
         operation, needs, earlier, around, remaining_stock, upright, progress, within
     )
     return OperationDrive(
         setup=space.setup,
         drive=drive,
-        identity=(drive.digest, scene.fixtures),
+        identity=(drive.digest, scene.fixtures, *((cut,) if cut else ())),
         findings=drive.findings,
+        allowance=allowance,
     )
 
 

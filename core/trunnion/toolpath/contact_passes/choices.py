@@ -8,6 +8,8 @@ from trunnion.settings import setting
 
 TOO_STEEP, TOO_SHALLOW = "surface.too-steep", "surface.too-shallow"
 """Codes of findings on slopes that one strategy leaves to another."""
+IN_STOCK = "surface.in-stock"
+"""Code of the finding on what lies beside stock that is in the way of an upright tool."""
 
 
 def steepest() -> Any:

@@ -90,19 +90,16 @@ class StockClearance:
         wary: bool = False,
     ) -> tuple[ClearanceQuery, ...]:
         """Return what poses are asked for, the safest first: clear of stock all over the part and of what stands beyond; of less on the
-        part; of what stands beyond alone; of the part, which `query` tells.
+        part; of what stands beyond alone, and of the part, which `query` tells.
 
-        The last only where nothing is left on the faces: what leaves an allowance leaves out what no axis comes to safely, and finishing
-        finds what other leaning tools have cut meanwhile, which nobody keeps. `wary` leaves out both that ask for nothing on the part."""
+        What no axis comes to without a shank in what stands is left. `wary` leaves out the last, which asks for nothing on the part."""
         found = [
             self.with_stock(query_for(thickened(self.tool, t)))
             for t in sorted({self.thickness, LEAST_STOCK}, reverse=True)
         ]
         if wary:
             return tuple(found)
-        if not self.has_stock:
-            return (*found, query)
-        return (*found, self.with_stock(query), *(() if self.drive.allowance > 0.0 else (query,)))
+        return (*found, self.with_stock(query) if self.has_stock else query)
 
     def retreats(self, tip: Floats, axis: Floats) -> Floats:
         """Return how far (k,) in mm a tool at tips (k, 3) goes out along its axes (k, 3) before the rest of the way is clear of everything:

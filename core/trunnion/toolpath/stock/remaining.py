@@ -1,14 +1,14 @@
-"""What stands over a part beyond a thickness: positions in the blank that no field of heights has above it, for bodies to keep clear of.
+"""What stands over a part beyond a thickness: positions in the blank that no field of heights has above it and no leaning tool has cut, for
+bodies to keep clear of.
 
-Fields of heights know nothing of what leaning tools have cut, so that there is never less than this says but in gaps between the
-positions, by which bodies are taken wider.
+There is never less than this says but in gaps between the positions, by which bodies are taken wider.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -18,8 +18,10 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.point_groups import PointGroups
 from trunnion.model.blank import Blank
 from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.settings import digest
 from trunnion.threads import in_parallel
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.leaning_cuts import LeaningCut, StockLattice
 
 CELL, MOST = 1.0, 400_000
 """mm between positions, and how many of them a blank has at most: beyond, they lie farther apart."""
@@ -29,10 +31,12 @@ POSES = 500
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class RemainingStock:
-    """Positions (k, 3) mm in material that stands, `cell` mm apart, in the frame of the poses that are held against it."""
+    """Positions (k, 3) mm in material that stands, `cell` mm apart, in the frame of the poses that are held against it. `cut` is a digest
+    of what leaning tools have cut of it, empty where that is nothing."""
 
     points: Floats
     cell: float
+    cut: str = ""
     _groups: list[PointGroups] = field(init=False, repr=False, default_factory=list)
 
     @property
@@ -44,16 +48,23 @@ class RemainingStock:
 
     @staticmethod
     def of(
-        blank: Blank, frame: Frame, fields: Sequence[tuple[PlanningStock, Frame]]
+        blank: Blank,
+        frame: Frame,
+        fields: Sequence[tuple[PlanningStock, Frame]],
+        cuts: Sequence[LeaningCut] = (),
     ) -> RemainingStock:
-        """Return all that is not known to be gone: what lies in the blank and below every one of some fields, each with its frame."""
-        low, high = blank.box_in(frame)
-        cell = max(CELL, float(np.prod(high - low) / MOST) ** (1.0 / 3.0))
-        count = np.maximum(np.ceil((high - low) / cell), 1).astype(int)
-        points = low + (np.argwhere(np.ones(tuple(count), dtype=bool)) + 0.5) * (high - low) / count
+        """Return all that is not known to be gone: what lies in the blank, below every one of some fields, each with its frame, and in no
+        cut of a leaning tool."""
+        lattice, cell = lattice_in(blank, frame)
+        present = np.ones(lattice.count, dtype=bool)
+        for cut in cuts:
+            cut.take_off(present, lattice, frame)
+        points = lattice.points()[present.ravel()]
         for stock, other in fields:
             points = points[_is_below(stock, other.to_local(frame.to_world(points)))]
-        return RemainingStock(points=points, cell=cell)
+        return RemainingStock(
+            points=points, cell=cell, cut=digest(*(c.digest for c in cuts)) if cuts else ""
+        )
 
     @property
     def is_empty(self) -> bool:
@@ -66,7 +77,7 @@ class RemainingStock:
             return self
         away, row = cKDTree(points).query(self.points)
         outside = ((self.points - points[row]) * normals[row]).sum(axis=1) > 0.0
-        return RemainingStock(points=self.points[outside & (away > thickness)], cell=self.cell)
+        return replace(self, points=self.points[outside & (away > thickness)])
 
     def is_free(
         self,
@@ -87,6 +98,16 @@ class RemainingStock:
 
             in_parallel(work, len(tip), POSES, progress, "Looking for what stands in the way")
         return ~held
+
+
+def lattice_in(blank: Blank, frame: Frame) -> tuple[StockLattice, float]:
+    """Return the positions that a blank is known by in a frame, and how far they lie apart in mm at most."""
+    low, high = blank.box_in(frame)
+    cell = max(CELL, float(np.prod(high - low) / MOST) ** (1.0 / 3.0))
+    count = np.maximum(np.ceil((high - low) / cell), 1).astype(int)
+    step = (high - low) / count
+    nx, ny, nz = count.tolist()
+    return StockLattice(low=low + 0.5 * step, step=step, count=(nx, ny, nz)), cell
 
 
 def _is_below(stock: PlanningStock, points: Floats) -> Bools:

@@ -1,7 +1,8 @@
 """One planning stock for each direction that a tool comes from, and what each knows of what the others have cut.
 
 A field of heights says that everything above it is gone. Seen from another direction that leaves, column by column, the highest position in
-the blank that no field has above it: taken over in steps of a cell, always on the side of material.
+the blank that no field has above it: taken over in steps of a cell, always on the side of material. What leaning tools have cut no field
+knows; it is remembered move by move, for those that ask what stands by positions.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from trunnion.plan.contract import RollingGround
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import CELL, MOST_CELLS, PlanningStock
+from trunnion.toolpath.stock.leaning_cuts import LeaningCut
 from trunnion.toolpath.stock.remaining import RemainingStock
 
 NEIGHBOURHOOD = 3
@@ -40,6 +42,7 @@ class StockViews:
         self._frames: dict[str, Frame] = {}
         self._known: dict[tuple[str, str], str] = {}
         self._grounds: dict[str, tuple[Development, PlanningStock]] = {}
+        self._leaning: list[LeaningCut] = []
 
     def seen(self, setup: Setup, cell: float = 0.0) -> PlanningStock:
         """Return the stock in the frame of a setup (a cutting frame is one), with all that was cut from other directions; in cells of
@@ -100,18 +103,29 @@ class StockViews:
         stock = self.over_ground(ground).after(path, tool, progress)
         self._grounds[digest(ground.development)] = (ground.development, stock)
 
-    def remaining_stock(self, frame: Frame) -> RemainingStock:
-        """Return what stands of the blank by all directions together, in a frame."""
+    def remaining_stock(self, frame: Frame, *, leaning: bool = False) -> RemainingStock:
+        """Return what stands of the blank by all directions together, in a frame; with `leaning` without what leaning tools have cut that
+        was remembered."""
         fields = [(stock, self._frames[name]) for name, stock in self._stocks.items()]
-        return RemainingStock.of(self._blank, frame, fields)
+        return RemainingStock.of(self._blank, frame, fields, self._leaning if leaning else ())
 
     def cut(
-        self, setup: Setup, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS
+        self,
+        setup: Setup,
+        path: Toolpath,
+        tool: Tool,
+        progress: Progress = NO_PROGRESS,
+        *,
+        remember: bool = False,
     ) -> bool:
         """Take a path in the frame of a setup off its stock; return whether anything was. A leaning tool takes nothing off: the stock is
-        then higher than it is."""
+        then higher than it is. With `remember` what it cuts is kept for `remaining_stock`."""
+        if not len(path):
+            return False
         upright = path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC
-        if not len(path) or not upright.all():
+        if not upright.all():
+            if remember:
+                self._leaning.append(LeaningCut(path, tool, setup.frame))
             return False
         name = digest(setup.frame)
         self._stocks[name] = self._stocks[name].after(path, tool, progress)

@@ -39,6 +39,7 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
     strips_over,
     tip_spacing,
 )
+from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.contact_passes.upright.tracing import follow
 from trunnion.toolpath.contract import Planned, lead_and_tilt, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
@@ -193,9 +194,10 @@ def parallel(
         reversing=settings.way == "both",
         chord=settings.chord,
     )
+    passes, blocked = without_stock_contact(passes, drive, tool, stock, planes.widest)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.7, 1.0)),
-        findings=(*found, *lost),
+        findings=(*found, *lost, *blocked),
     )
 
 

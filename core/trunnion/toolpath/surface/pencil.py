@@ -28,6 +28,7 @@ from trunnion.toolpath.contact_passes.linking.link_passes import linked
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import slopes_of
+from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import follow
 from trunnion.toolpath.contract import Planned, strategy
@@ -157,8 +158,10 @@ def pencil(
         reversing=True,
         chord=settings.chord,
     )
+    passes, blocked = without_stock_contact(passes, drive, tool, stock, stepover)
     return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0))
+        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
+        findings=blocked,
     )
 
 

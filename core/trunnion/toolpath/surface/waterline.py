@@ -32,6 +32,7 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
     slopes_of,
 )
+from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import thinned
 from trunnion.toolpath.contact_passes.upright.wall_foot import foot_passes
@@ -177,9 +178,10 @@ def waterline(
         arcs=True,
         overlap=settings.overlap,
     )
+    passes, blocked = without_stock_contact(passes, drive, tool, stock, step)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
-        findings=found,
+        findings=(*found, *blocked),
     )
 
 

@@ -10,7 +10,7 @@ import pytest
 from pytest import approx
 
 from leaning_tools import contact_of, cutter
-from surface_drives import DATA, driven, grid
+from surface_drives import DATA, driven, grid, roughed
 from trunnion.findings import Refused
 from trunnion.geometry.sphere import angle_between
 from trunnion.pipeline.planning.clearance import ToolClearanceQuery
@@ -206,12 +206,13 @@ def test_leaned_passes_reach_beside_a_wall_where_upright_ones_touch() -> None:
 
 
 def over_a_floor(ask=None, tool=BALL, **chosen):
-    drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=8, high=(20.0, 6.0)), height=0.1)
+    floor = grid(lambda x, y: 0.0 * x, n=8, high=(20.0, 6.0))
+    drive, setup, stock = driven(floor, height=0.1)
     return parallel(
         replace(drive, query_for=ask),
         tool,
         DATA,
-        stock,
+        roughed(stock, floor),
         setup,
         choose(ParallelSettings, chosen),
         NO_PROGRESS,

@@ -9,11 +9,15 @@ import pytest
 
 from surface_drives import DATA, driven, grid, joined
 from trunnion.geometry.frame import WORLD
-from trunnion.geometry.kernels.bodies import bodies_hold_reference
+from trunnion.geometry.kernels.bodies import (
+    bodies_hold_reference,
+    lattice_held,
+    lattice_held_reference,
+)
 from trunnion.geometry.point_groups import PointGroups
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Box
-from trunnion.model.motion.toolpath import Mark, Motion
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.plan.freeform.finishing.rest import HOLDER_CLEARANCE, remaining_upright, without_met
 from trunnion.toolpath.contact_passes.linking.link_passes import linked
@@ -22,6 +26,7 @@ from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stock_clearance import StockClearance, grown
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.remaining import RemainingStock
+from trunnion.toolpath.stock.views import StockViews
 from verify_tools import bull
 
 BALL = replace(bull(6.0, 3.0)(), flute_length=8.0, neck_length=20.0)
@@ -149,17 +154,73 @@ def test_poses_are_asked_for_from_the_safest_to_those_clear_of_the_part_alone():
         return bare
 
     found = clearance(whole).queries(query_for, bare)
-    # Twice the wanted thickness on either side, then a millimetre's, then nothing but what stands, then nothing.
-    assert widths == pytest.approx([4.0, 2.0]) and len(found) == 4 and found[-1] is bare
+    # Twice the wanted thickness on either side, then a millimetre's, then nothing but what stands.
+    assert widths == pytest.approx([4.0, 2.0]) and len(found) == 3
+    # With its shank in stock a tool goes nowhere, whatever it leaves.
     tip, into = np.array([[16.0, 10.0, 0.0]]), np.array([LEANING * [-1.0, 1.0, 1.0]])
-    assert [bool(q(tip, into)[0]) for q in found] == [False, False, False, True]
-    # What leaves an allowance goes nowhere with its shank in stock.
-    around = clearance(whole)
-    around = replace(around, drive=replace(around.drive, allowance=0.1))
-    assert [bool(q(tip, into)[0]) for q in around.queries(query_for, bare)] == [False] * 3
+    assert [bool(q(tip, into)[0]) for q in found] == [False] * 3
     nothing = replace(whole, points=np.zeros((0, 3)))
-    assert len(clearance(nothing).queries(query_for, bare)) == 3
+    found = clearance(nothing).queries(query_for, bare)
+    assert len(found) == 3 and found[-1] is bare
     assert len(clearance(whole).queries(query_for, bare, wary=True)) == 2
+
+
+def leant(past, y=10.0, low=0.0):
+    """Return the path of a leaning tool along the blank from its end to an x, at a height."""
+    tips = np.array([[32.0, y, low + 20.0], [32.0, y, low], [past, y, low]])
+    return Toolpath(
+        position=tips,
+        axis=np.tile(LEANING, (3, 1)),
+        motion=np.array([Motion.RAPID, Motion.LINE, Motion.LINE]),
+        feed=np.array([0.0, 100.0, 100.0]),
+        mark=np.array([Mark.RETRACT, Mark.ENTRY, Mark.CUT]),
+        centre=np.full((3, 3), np.nan),
+    )
+
+
+def test_the_kernel_that_takes_bodies_off_a_lattice_and_the_plain_one_agree():
+    pick = np.random.default_rng(7)
+    tips, axes = pick.uniform(-2.0, 12.0, (12, 3)), pick.normal(size=(12, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    rows = np.array([[0.0, 0.2, 1.0, 1.5], [1.0, 1.5, 5.0, 1.5]])
+    low, step = np.array([0.3, -0.2, 0.1]), np.array([1.0, 0.9, 1.1])
+    found, plain = (np.ones((10, 11, 9), bool) for _ in range(2))
+    lattice_held(found, low, step, tips, axes, rows)
+    lattice_held_reference(plain, low, step, tips, axes, rows)
+    assert (found == plain).all() and 0 < (~found).sum() < 990
+
+
+def test_what_a_leaning_tool_has_cut_stands_no_more_where_that_is_asked_for():
+    views = StockViews(BLANK)
+    views.seen(SETUP)
+    assert not views.cut(SETUP, leant(10.0), BALL, remember=True)
+    asked, unasked = (views.remaining_stock(WORLD, leaning=v) for v in (True, False))
+    gone = {tuple(p) for p in unasked.points.round(6).tolist()} - {
+        tuple(p) for p in asked.points.round(6).tolist()
+    }
+    assert len(asked.points) + len(gone) == len(unasked.points)
+    # All of it lies in the flutes of 8 mm over the way of the ball, and nearly all of that is in the blank.
+    at = np.array(sorted(gone))
+    off = at - [0.0, 10.0, 0.0]
+    assert np.abs(off[:, 1]).max() < BALL.radius and (at[:, 2] < 8.0).all()
+    across = np.abs(off @ [0.0, 1.0, 0.0]) < 2.0
+    assert across.any() and asked.cut and not unasked.cut
+    assert asked.cut != StockViews(BLANK).remaining_stock(WORLD, leaning=True).cut
+    forgotten = StockViews(BLANK)
+    forgotten.cut(SETUP, leant(10.0), BALL)
+    assert not forgotten.remaining_stock(WORLD, leaning=True).cut
+
+
+def test_a_shank_goes_where_an_earlier_leaning_tool_has_cut():
+    views = StockViews(BLANK)
+    views.seen(SETUP)
+    wide = replace(BALL, diameter=12.0, corner_radius=6.0, flute_length=30.0, neck_length=31.0)
+    views.cut(SETUP, leant(12.0), wide, remember=True)
+    tip, axis = np.array([[20.0, 10.0, 3.0]]), LEANING[None]
+    shank = ((5.0, 1.0, 20.0, 1.0),)
+    for leaning in (True, False):
+        stock = views.remaining_stock(WORLD, leaning=leaning)
+        assert bool(stock.is_free(shank, tip, axis)[0]) is leaning
 
 
 def test_a_tool_goes_out_at_feed_until_it_has_left_the_stock():

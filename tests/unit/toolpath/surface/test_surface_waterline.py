@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surface_drives import DATA, driven, grid, joined
+from surface_drives import DATA, driven, grid, joined, roughed
 from trunnion.findings import Refused
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.motion.toolpath import Mark, Motion
@@ -53,7 +53,7 @@ def round_wall(radius, foot, top, n=90, lean=0.0, tag=1):
 def planned(skin, tool, faces=(1,), allowance=0.0, height=0.01, **chosen):
     drive, setup, stock = driven(skin, faces=faces, allowance=allowance, height=height)
     return waterline(
-        drive, tool, DATA, stock, setup, WaterlineSettings(**chosen), NO_PROGRESS
+        drive, tool, DATA, roughed(stock, skin), setup, WaterlineSettings(**chosen), NO_PROGRESS
     ), drive
 
 

@@ -15,6 +15,7 @@ from trunnion.toolpath.contact_passes.linking.link_passes import linked
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.upright.fixed_axis import UprightPasses
+from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -52,5 +53,6 @@ def upright_path(
         order=order,
         reversing=reversing,
     )
-    path = linked(passes, drive, tool, data, stock, setup, parameters, progress)
-    return Planned(path=path, findings=made.remaining_findings(drive, tool, stepover))
+    clear, blocked = without_stock_contact(passes, drive, tool, stock, stepover)
+    path = linked(clear, drive, tool, data, stock, setup, parameters, progress)
+    return Planned(path=path, findings=(*made.remaining_findings(drive, tool, stepover), *blocked))

@@ -1,0 +1,138 @@
+"""Passes of an upright tool without what its neck, shank or holder would meet stock on.
+
+Roughing can't come everywhere: beside what it left a slender cutter may still touch the faces, with its flutes deep below the top of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.ndimage import maximum_filter, minimum_filter
+
+from trunnion.findings import Finding, warning
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels import heightfield
+from trunnion.model.tool import Tool
+from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.toolpath.contact_passes.choices import IN_STOCK
+from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.stock.heightfield import PlanningStock
+
+RIM = 2
+"""Cells round which a field is as high as beside them: how wide walls keep it high though all beside them is cut."""
+SHORTEST = 0.05
+"""mm: a shorter piece of a pass between two interruptions is left out."""
+SMALLEST_LEFTOVER = 0.5
+"""mm2: less than this is the rim of an area."""
+
+
+def without_stock_contact(
+    passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, stock: PlanningStock, stepover: float
+) -> tuple[list[Pass], tuple[Finding, ...]]:
+    """Return what of passes in their order, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes, and a
+    finding of the area that is left.
+
+    What passes before have cut is gone. Where the field's rims beside walls can't be told from stock, stock is not seen.
+    """
+    rows = np.array(tool.profile()).reshape(-1, 4)
+    if not len(passes) or not len(rows) or not all(p.upright for p in passes):
+        return list(passes), ()
+    field = np.ascontiguousarray(
+        minimum_filter(stock.heights, 2 * RIM + 1, mode="nearest"), dtype=np.float64
+    )
+    tips, owner, segment = _spaced(passes, stock.cell)
+    doubtful = ~_is_free(field, stock, tips, rows)
+    if not doubtful.any():
+        return list(passes), ()
+    starts = np.searchsorted(owner, np.arange(len(passes) + 1))
+    kept, left, over = list[Pass](), 0.0, 0.0
+    for k, one in enumerate(passes):
+        of = slice(starts[k], starts[k + 1])
+        met = np.zeros(starts[k + 1] - starts[k], dtype=bool)
+        some = np.flatnonzero(doubtful[of])
+        if len(some):
+            found = np.zeros(len(some), dtype=bool)
+            heightfield.zmap_meets(
+                field, *stock.corner, stock.cell, np.ascontiguousarray(tips[of][some]), rows, found
+            )
+            met[some] = found
+        pieces = [one]
+        if met.any():
+            pieces = _pieces(one, segment[of][met])
+            left += one.length - sum(p.length for p in pieces)
+            over = max(over, float(field.max() - tips[of][met][:, 2].min()))
+        for piece in pieces:
+            _lower(field, stock, piece, tool)
+        kept += pieces
+    return kept, _findings(left * stepover, over, drive, tool)
+
+
+def _spaced(passes: Sequence[Pass], step: float) -> tuple[Floats, Ints, Ints]:
+    """Return positions (n, 3) along all passes no farther apart than a step (mm), the number (n,) of the pass that each is on, and of the
+    move of that."""
+    tips, owner, segment = list[Floats](), list[Ints](), list[Ints]()
+    for k, one in enumerate(passes):
+        moved = np.linalg.norm(np.diff(one.tip, axis=0), axis=1)
+        count = np.maximum(np.ceil(moved / step), 1.0).astype(np.int64)
+        row = np.repeat(np.arange(len(count)), count)
+        number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+        share = (number / count[row])[:, None]
+        tips.append(
+            np.vstack([one.tip[row] + share * (one.tip[row + 1] - one.tip[row]), one.tip[-1:]])
+        )
+        segment.append(np.append(row, len(count) - 1))
+        owner.append(np.full(len(row) + 1, k))
+    return np.concatenate(tips), np.concatenate(owner), np.concatenate(segment)
+
+
+def _is_free(field: Floats, stock: PlanningStock, tips: Floats, rows: Floats) -> Bools:
+    """Return at which tips (n, 3) nothing in the square about each cone of a body is higher than the cone's lower end."""
+    cell = np.floor((tips[:, :2] - stock.corner) / stock.cell).astype(np.int64)
+    at = tuple(np.clip(cell, 0, np.array(field.shape) - 1).T)
+    # A tip beside the field counts at the nearest cell of it, which is no farther from any other one.
+    clear = np.ones(len(tips), dtype=bool)
+    for z0, r0, _, r1 in rows.tolist():
+        size = 2 * (math.ceil(max(r0, r1) / stock.cell) + 1) + 1
+        clear &= maximum_filter(field, size, mode="nearest")[at] <= tips[:, 2] + z0
+    return clear
+
+
+def _pieces(one: Pass, blocked: Ints) -> list[Pass]:
+    """Return the pieces of a pass without moves of it."""
+    free = np.ones(len(one) - 1, dtype=bool)
+    free[blocked] = False
+    edges = np.flatnonzero(np.diff(free.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
+    pieces = [one.of(slice(a, b + 1)) for a, b in edges.tolist()]
+    return [p for p in pieces if p.length >= SHORTEST]
+
+
+def _lower(field: Floats, stock: PlanningStock, one: Pass, tool: Tool) -> None:
+    """Take a pass off a field in which each cell is as high as the lowest near it: as wide as the cutter and that."""
+    starts, ends = (np.ascontiguousarray(v) for v in (one.tip[:-1], one.tip[1:]))
+    wider = (RIM + heightfield.HALF_DIAGONAL) * stock.cell
+    heightfield.zmap_cut(
+        field,
+        *stock.corner,
+        stock.cell,
+        starts,
+        ends,
+        tool.radius + wider,
+        tool.corner_radius,
+        np.empty((len(starts), 2)),
+    )
+
+
+def _findings(area: float, over: float, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
+    if area < SMALLEST_LEFTOVER:
+        return ()
+    return (
+        warning(
+            IN_STOCK,
+            f"{drive.feature}: about {area:.1f} mm2 are left: stock that no roughing took stands up to {over:.0f} mm over them, in the "
+            f"way of the neck or shank of {tool.name}",
+            drive.feature,
+            remedy="rough it from another direction or with a more slender cutter, or finish it with one with a longer neck",
+        ),
+    )

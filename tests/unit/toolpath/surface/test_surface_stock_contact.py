@@ -1,0 +1,127 @@
+"""Upright tools beside stock that roughing left: nothing above their flutes meets it, and what they leave for that is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from surface_drives import DATA, driven, grid, joined, roughed
+from trunnion.geometry.kernels.heightfield import zmap_meets, zmap_meets_reference
+from trunnion.model.motion.toolpath import Mark
+from trunnion.progress import NO_PROGRESS
+from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
+from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
+from trunnion.toolpath.surface.constant import ConstantSettings, constant
+from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
+from trunnion.toolpath.surface.waterline import WaterlineSettings, waterline
+from verify_tools import bull
+
+SLENDER = replace(
+    bull(2.0, 1.0)(flute=3.0),
+    neck_diameter=1.9,
+    neck_length=10.0,
+    shank_diameter=4.0,
+    stickout=30.0,
+)
+"""A ball of 2 mm: its neck of 1.9 mm begins 3 mm, its shank of 4 mm 10 mm over the tip."""
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_compiled_kernel_and_the_plain_one_agree(seed):
+    pick = np.random.default_rng(seed)
+    heights, tips = pick.uniform(0.0, 10.0, (40, 30)), pick.uniform(-3.0, 20.0, (300, 3))
+    rows = np.array([[1.0, 0.8, 4.0, 0.8], [4.0, 0.8, 7.0, 3.0], [7.0, 4.0, 20.0, 2.0]])
+    found, plain = np.zeros(300, bool), np.zeros(300, bool)
+    zmap_meets(heights, -1.0, 2.0, 0.5, tips, rows, found)
+    zmap_meets_reference(heights, -1.0, 2.0, 0.5, tips, rows, plain)
+    assert (found == plain).all() and 0 < found.sum() < 300
+
+
+def trench(wide, deep=20.0):
+    """Return a drive, the setup and the stock of a level floor, cut down to it only in a trench along x about y = 15."""
+    drive, setup, stock = driven(grid(lambda x, y: 0.0 * x, n=8), top=deep)
+    y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
+    heights = stock.heights.copy()
+    heights[:, np.abs(y - 15.0) < 0.5 * wide] = 0.3
+    return drive, setup, replace(stock, heights=heights)
+
+
+def along(y, z=0.0, start=2.0, end=28.0):
+    tips = np.array([[start, y, z], [end, y, z]])
+    return Pass(tip=tips, axis=np.tile(UPRIGHT, (2, 1)), normal=np.tile(UPRIGHT, (2, 1)))
+
+
+@pytest.mark.parametrize(("wide", "clear"), [(30.0, True), (1.5, False)])
+def test_a_pass_in_a_trench_is_cut_where_neck_and_shank_have_space(wide, clear):
+    drive, _, stock = trench(wide)
+    kept, findings = without_stock_contact([along(15.0)], drive, SLENDER, stock, 0.5)
+    assert bool(kept) is clear and bool(findings) is not clear
+    if findings:
+        assert findings[0].code == "surface.in-stock" and "13.0 mm2" in findings[0].text
+
+
+def test_stock_no_higher_than_the_flutes_are_long_is_in_no_neck_s_way():
+    drive, _, stock = trench(1.5, deep=2.9)
+    kept, findings = without_stock_contact([along(5.0)], drive, SLENDER, stock, 0.5)
+    assert len(kept) == 1 and not findings
+
+
+def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
+    drive, _, stock = trench(30.0)
+    heights = stock.heights.copy()
+    x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
+    heights[x > 20.0] = 20.0
+    kept, findings = without_stock_contact(
+        [along(15.0)], drive, SLENDER, replace(stock, heights=heights), 0.5
+    )
+    assert not kept and findings
+    split = Pass(
+        tip=np.column_stack([np.linspace(2.0, 28.0, 53), np.full(53, 15.0), np.zeros(53)]),
+        axis=np.tile(UPRIGHT, (53, 1)),
+        normal=np.tile(UPRIGHT, (53, 1)),
+    )
+    (kept,), findings = without_stock_contact(
+        [split], drive, SLENDER, replace(stock, heights=heights), 0.5
+    )
+    # Its shank of 2 mm comes as near as the rim of 1 mm that isn't told from stock lets it.
+    assert kept.tip[0, 0] == 2.0 and 18.0 < kept.tip[-1, 0] < 20.0
+
+
+def test_passes_that_go_down_step_by_step_make_space_for_the_neck_of_those_below():
+    drive, _, stock = trench(1.5, deep=9.0)
+    stairs = [along(5.0, z) for z in np.arange(7.0, -0.1, -1.0)]
+    kept, findings = without_stock_contact(stairs, drive, SLENDER, stock, 0.5)
+    assert len(kept) == len(stairs) and not findings
+    kept, findings = without_stock_contact(stairs[-1:], drive, SLENDER, stock, 0.5)
+    assert not kept and findings
+
+
+def test_where_the_shank_is_wider_than_the_cutter_steps_make_no_space_for_it():
+    drive, _, stock = trench(1.5, deep=20.0)
+    stairs = [along(5.0, z) for z in np.arange(18.0, -0.1, -1.0)]
+    thick = replace(SLENDER, shank_diameter=6.0)
+    kept, findings = without_stock_contact(stairs, drive, thick, stock, 0.5)
+    assert kept and 9.0 <= min(p.tip[:, 2].min() for p in kept) <= 10.0 and findings
+
+
+STRATEGIES = (
+    (parallel, ParallelSettings()),
+    (constant, ConstantSettings()),
+    (waterline, WaterlineSettings(chord=0.005, shallowest=0.0)),
+)
+
+
+@pytest.mark.parametrize(
+    ("strategy", "chosen"), STRATEGIES, ids=["parallel", "constant", "waterline"]
+)
+@pytest.mark.parametrize("is_roughed", [True, False])
+def test_a_strategy_leaves_what_lies_under_stock_and_says_so(strategy, chosen, is_roughed):
+    hill = grid(lambda x, y: 0.5 * (x + y), n=12, high=(8.0, 8.0))
+    drive, setup, stock = driven(joined(hill), height=0.05, top=30.0)
+    stock = roughed(stock, hill) if is_roughed else stock
+    made = strategy(drive, SLENDER, DATA, stock, setup, chosen, NO_PROGRESS)
+    codes = [f.code for f in made.findings]
+    assert ("surface.in-stock" in codes) is not is_roughed
+    assert bool((made.path.mark == Mark.CUT).any()) is is_roughed
