@@ -278,7 +278,7 @@ def test_sides_of_a_block_stand_free_and_its_bottom_lies_in_the_blank():
     places = samples_on(space.skin, part.tags)
     walls = walls_of(places, part.tags)
     assert len(walls) == 4
-    assert on_outline(space, places, walls) == walls
+    assert on_outline(space, walls) == walls
 
 
 def test_hollows_that_hang_together_are_apart_from_what_they_run_into():

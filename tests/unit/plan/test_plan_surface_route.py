@@ -9,7 +9,7 @@ import pytest
 from lxml import etree
 
 from samples import written
-from trunnion.findings import BadInput
+from trunnion.findings import BadInput, Severity
 from trunnion.geometry.cut import plane_cut
 from trunnion.pipeline import Engine
 from trunnion.pipeline.planning.patches import with_cut
@@ -239,3 +239,13 @@ def test_a_group_that_a_person_deleted_is_not_cut(speckled):
     gone = next(f for f in session.recognition if f.attributes.get("local"))
     after = engine.run(replace(session, recognition=session.recognition.without(gone.id)), "route")
     assert not set(gone.tags) & planned(after.process)
+
+
+def test_a_hole_through_a_hill_is_finished_inside_it_with_a_cutter_that_has_space():
+    hole = cq.Workplane("XY", origin=(40.0, 20.0, 0.0)).circle(8.0).extrude(30.0)
+    process = routed(cq.Workplane(cq.Shape.cast(hilly())).cut(hole).val().wrapped).process
+    assert not [f for f in process.findings if f.severity is Severity.ERROR]
+    (inside,) = (
+        o for o in process.operations if o.kind == "profile_finish" and o.cutter.diameter < 13.0
+    )
+    assert 1.25 * inside.cutter.radius < 8.0

@@ -134,3 +134,17 @@ def is_clear_of_walls(
             if (over + allowance + clearance >= bottom + z0).any():
                 return False
     return True
+
+
+def free_before(
+    space: SurfaceSpace,
+    samples: AreaSamples,
+    radius: float,
+    bottom: float,
+    progress: Progress = NO_PROGRESS,
+) -> Bools:
+    """Return before which samples (k,) of upright walls a disc of a radius (mm) may go down to a height: none of the part is over it."""
+    shifted = samples.point[:, :2] + (radius + tolerance.SEW) * samples.normal[:, :2]
+    lowest = float(space.low[2]) - 1.0
+    over = space.skin.drop.drop(shifted, level_disc(radius), lowest, progress)
+    return np.asarray(over < bottom + tolerance.SEW)

@@ -117,11 +117,13 @@ def _plan(state: SurfacePlanState, progress: Progress) -> None:
     progress.at(0.0, "looking at faces")
     samples = samples_on(space.skin, tuple(mine))
     upright = walls_of(samples, mine)
-    walls = on_outline(space, samples, upright, progress)
-    for tags in progress.each(connected(walls, part.graph())):
-        plan_outline(state, tags)
-    level = plan_lands(state, set(mine) - set(walls), finishers(state), progress.part(0.0, 0.05))
-    open_faces = set(mine) - set(walls) - level.tags
+    walls: set[int] = set()
+    free = on_outline(space, upright, progress)
+    for tags in progress.each(connected(free, part.graph())):
+        if plan_outline(state, tags):
+            walls.update(tags)
+    level = plan_lands(state, set(mine) - walls, finishers(state), progress.part(0.0, 0.05))
+    open_faces = set(mine) - walls - level.tags
     hidden = (
         with_joined_hollows(
             state.recognition,

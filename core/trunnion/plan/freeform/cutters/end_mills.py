@@ -11,7 +11,6 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Bools
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.finishing.areas import VERTICAL
 from trunnion.plan.freeform.lands import (
     SIDE,
     SKIM,
@@ -23,6 +22,7 @@ from trunnion.plan.freeform.lands import (
     without,
 )
 from trunnion.plan.freeform.reach import AreaSamples
+from trunnion.plan.freeform.wall_curves import VERTICAL
 from trunnion.plan.tool_choice import covered_by_few, depth_reached, without_slender
 from trunnion.progress import Progress
 

@@ -12,9 +12,9 @@ from trunnion.geometry.facegraph import CONVEX, FaceGraph
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.part.part import Part
-from trunnion.plan.freeform.cutters.cutter import level_disc
-from trunnion.plan.freeform.reach import AreaSamples
+from trunnion.plan.freeform.reach import AreaSamples, free_before, samples_on
 from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.freeform.wall_curves import VERTICAL, is_upright
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import exclusive_kinds
 
@@ -23,8 +23,8 @@ TIGHT = 8.0
 LOCAL, REMAINING = "local", "remaining"
 END_MILL = 3.0
 """mm: radius of a cutter that must have space down to the foot of an upright wall for it to stand free."""
-VERTICAL = np.sin(np.radians(0.5))
-"""Cosine of the angle from the tool's axis from which on a normal counts as level: the wall is upright then."""
+FEW = 200
+"""Positions on an upright face that say whether it stands free all over."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -140,24 +140,21 @@ def walls_of(samples: AreaSamples, tags: Collection[int]) -> tuple[int, ...]:
 
 def on_outline(
     space: SurfaceSpace,
-    samples: AreaSamples,
     tags: Collection[int],
     progress: Progress = NO_PROGRESS,
 ) -> tuple[int, ...]:
     """Return the upright faces that nothing of the part is in front of at their height: an end mill beside them is out in the free.
 
-    A face that runs into another one at its foot, or meets one that comes out of it, doesn't stand free.
+    A face that runs into another one at its foot, or meets one that comes out of it, doesn't stand free. One that leans or twists has
+    another plan at each height, and none that the side of an end mill could go along.
     """
     found, graph = [], space.part.graph()
     for tag in progress.each(sorted(tags)):
         edges = [e for e in graph.edges_of[tag - 1] if graph.across(e, tag - 1) + 1 not in tags]
-        if any(graph.convexity[e] != CONVEX for e in edges):
+        if any(graph.convexity[e] != CONVEX for e in edges) or not is_upright(space.skin, tag):
             continue
-        own = samples.of(samples.face == tag)
-        shifted = own.point[:, :2] + (END_MILL + tolerance.SEW) * own.normal[:, :2]
-        over = space.skin.drop.drop(
-            shifted, level_disc(END_MILL), float(space.low[2]) - 1.0, progress.part(0.0, 0.0)
-        )
-        if (over < own.point[:, 2].min() + tolerance.SEW).all():
+        own, skin = samples_on(space.skin, (tag,), FEW), space.skin
+        bottom = float(skin.points[skin.triangles[skin.of((tag,))], 2].min())
+        if free_before(space, own, END_MILL, bottom, progress.part(0.0, 0.0)).all():
             found.append(tag)
     return tuple(found)
