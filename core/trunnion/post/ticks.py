@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -20,8 +21,11 @@ from trunnion.units import MM_PER_INCH
 class TickScale:
     """How lengths in mm become written numbers: `unit` mm of one written unit, `decimals` of a length, `feed_decimals` of a feed.
 
-    `point` is what a whole number ends with, for controls that count one without in their least increment.
+    `point` is what a whole number ends with, for controls that count one without in their least increment; `sign` is "+" where all
+    numbers have a sign.
     """
+
+    sign: ClassVar[str] = ""
 
     unit: float
     decimals: int
@@ -57,6 +61,19 @@ class TickScale:
         if not rest:
             return f"{sign}{whole}{self.point}"
         return f"{sign}{whole}.{rest:0{self.decimals}d}".rstrip("0")
+
+    def texts(self, ticks: Ints, before: str = "") -> list[str]:
+        """Return the numbers that ticks (n,) stand for as `text` writes each, with `before` in front of them.
+
+        >>> Scale(unit=1.0, decimals=4, feed_decimals=1).texts(np.array([-125000, 0]), " X")
+        [' X-12.5', ' X0']
+        """
+        if not self.decimals:
+            return [before + self.text(v) for v in ticks.tolist()]
+        form = f"{before}%{self.sign}.{self.decimals}f\n" * len(ticks)
+        full = (form % tuple((ticks / 10.0**self.decimals).tolist())).split("\n")
+        cut = [text.rstrip("0") for text in full[:-1]]
+        return [text[:-1] + self.point if text[-1] == "." else text for text in cut]
 
     def feed(self, feed: float) -> str:
         """Return a feed in mm/min as it is written; never zero."""
@@ -119,13 +136,13 @@ class WrittenPath:
             mark=np.zeros(len(self.motion), np.int64),
         )
 
-    def blocks(self) -> Iterator[tuple[list[int], list[int], int, float]]:
-        """Yield end point, centre, motion and feed of each row."""
+    def blocks(self, rows: slice) -> Iterator[tuple[list[int], list[int], int, float]]:
+        """Yield end point, centre, motion and feed of each of some rows."""
         return zip(
-            self.point.tolist(),
-            self.centre.tolist(),
-            self.motion.tolist(),
-            self.feed.tolist(),
+            self.point[rows].tolist(),
+            self.centre[rows].tolist(),
+            self.motion[rows].tolist(),
+            self.feed[rows].tolist(),
             strict=True,
         )
 

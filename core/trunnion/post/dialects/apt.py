@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -174,7 +175,8 @@ FeedText = Callable[[float, int], str]
 
 def _feed_words(words: AptWords, section: ProgramSection, scale: TickScale, units: str) -> FeedText:
     if section.feed_mode is not FeedMode.REVOLUTION:
-        return lambda feed, _: words.feed[units].format(feed=scale.feed(feed))
+        by_feed = lru_cache(maxsize=1)(lambda v: words.feed[units].format(feed=scale.feed(v)))
+        return lambda feed, _: by_feed(feed)
     feeds = FeedFormat(
         mode=section.feed_mode, spindle=section.spindle, surface_speed=section.surface_speed
     )
@@ -190,20 +192,35 @@ def _feed_words(words: AptWords, section: ProgramSection, scale: TickScale, unit
 def _motions(
     path: WrittenPath, scale: TickScale, axes: TickScale | None, feed_text: FeedText
 ) -> Iterator[str]:
-    text, last_axis_text, start = scale.text, "", [0, 0, 0]
-    rows = zip(path.blocks(), path.more.tolist(), path.dwell.tolist(), strict=True)
-    for (point, centre, motion, feed), axis, dwell in rows:
+    last_feed = ""
+    numbers = [scale.texts(v) for v in path.point.T]
+    if axes is not None:
+        numbers += [axes.texts(v) for v in path.more.T]
+    rows = zip(
+        map(",".join, zip(*numbers, strict=True)),
+        path.motion.tolist(),
+        path.feed.tolist(),
+        path.point[:, 0].tolist(),
+        path.dwell.tolist(),
+        strict=True,
+    )
+    for row, (end, motion, feed, x, dwell) in enumerate(rows):
         if motion == Motion.RAPID:
             yield "RAPID"
-        elif (now := feed_text(feed, point[0])) != last_axis_text:
-            last_axis_text = now
-            yield last_axis_text
+        elif (now := feed_text(feed, x)) != last_feed:
+            last_feed = now
+            yield last_feed
         if motion >= Motion.ARC_CW:
-            radius = int(round(((start[0] - centre[0]) ** 2 + (start[1] - centre[1]) ** 2) ** 0.5))
-            sense = 1 if motion == Motion.ARC_CCW else -1
-            yield f"CIRCLE/{text(centre[0])},{text(centre[1])},{text(start[2])},0,0,{sense},{text(radius)}"
-        leans = "".join(f",{axes.text(v)}" for v in axis) if axes is not None else ""
-        yield f"GOTO/{text(point[0])},{text(point[1])},{text(point[2])}{leans}"
+            yield _circle(path, row, scale.text)
+        yield f"GOTO/{end}"
         if dwell > 0.0:
             yield f"DELAY/{dwell_text(dwell)}"
-        start = point
+
+
+def _circle(path: WrittenPath, row: int, text: Callable[[int], str]) -> str:
+    """Return the statement of an arc's circle, at the height that it starts at."""
+    start = path.point[row - 1].tolist() if row else [0, 0, 0]
+    centre = path.centre[row].tolist()
+    radius = int(round(((start[0] - centre[0]) ** 2 + (start[1] - centre[1]) ** 2) ** 0.5))
+    sense = 1 if path.motion[row] == Motion.ARC_CCW else -1
+    return f"CIRCLE/{text(centre[0])},{text(centre[1])},{text(start[2])},0,0,{sense},{text(radius)}"

@@ -8,11 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from itertools import repeat
 from typing import ClassVar
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.motion.program import ProgramSection
 from trunnion.model.motion.toolpath import Motion
 from trunnion.post.header import STAMP_LINES, Header
@@ -39,6 +40,8 @@ MOST_OFF = 2.0
 
 class KlartextScale(TickScale):
     """Lengths and angles with their sign, plus too."""
+
+    sign: ClassVar[str] = "+"
 
     def text(self, ticks: int) -> str:
         """Return the number that some ticks stand for.
@@ -98,6 +101,24 @@ class KlartextBlockState(WrittenState):
             " ".join(["C", *parts, _turn(motion), "R0", *self.fed(feed, point)]),
         ]
 
+    def straight(self, path: WrittenPath, first: int, after: int) -> Iterator[str]:
+        """Yield the lines of the rows from `first` to before `after`, all straight as the one before them, as `lines` returns them."""
+        rows = slice(first - 1, after)
+        point, more, motion = path.point[rows], path.more[rows], path.motion[rows]
+        vectors, is_rapid = more.shape[1] > 0, (motion[1:] == Motion.RAPID).tolist()
+        feeds = self.fed_words(motion[1:], path.feed[first:after])
+        columns = [
+            *self.point_words(point, always=vectors),
+            *self.axis_words(more),
+            [
+                " R0 FMAX" if rapid else f" R0{feed}"
+                for rapid, feed in zip(is_rapid, feeds, strict=True)
+            ],
+        ]
+        self.reached(point[-1].tolist(), more[-1].tolist(), int(motion[-1]))
+        self.pole = None if any(is_rapid) else self.pole
+        yield from map("".join, zip(repeat("LN" if vectors else "L"), *columns))
+
     def helix(self, block: Block, sweep: float) -> list[str]:
         """Return the blocks of an arc by how far it turns, rad, from where the tool is to a block's end: a helix, or a whole circle."""
         point, centre, motion, feed = block
@@ -141,6 +162,13 @@ class KlartextBlockState(WrittenState):
 
 class KlartextTipState(KlartextBlockState, TipState):
     """The same while the control follows the tip."""
+
+    def axis_words(self, angle: Ints) -> list[list[str]]:
+        """Return by number the words of all tool axes (k, 3) after the first."""
+        return [
+            self.vectors.texts(v[1:], f" {word}")
+            for word, v in zip(self.words.directions, angle.T, strict=False)
+        ]
 
 
 class KlartextCycles(CycleCallWriter):

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import ClassVar
 
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode, per_revolution
 from trunnion.post.iso_words import IsoWords
 from trunnion.post.settings import PostSettings
-from trunnion.post.ticks import TickScale
+from trunnion.post.ticks import TickScale, WrittenPath
 from trunnion.post.writer.arcs import CENTRES
 from trunnion.post.writer.feed import FeedFormat, feed_word, revolution_text
 from trunnion.post.writer.plane import MILLING
@@ -91,6 +92,50 @@ class WrittenState:
         self.at, self.angle, self.motion = (point[0], point[1], point[2]), angle, motion
         return " ".join(parts)
 
+    def writes_many(self) -> bool:
+        """Whether `straight` can write blocks from here on: milling, fed by the minute."""
+        return self.plane is MILLING and self.feeds.mode is self.feed_mode is FeedMode.MINUTE
+
+    def straight(self, path: WrittenPath, first: int, after: int) -> Iterator[str]:
+        """Yield the lines of the rows from `first` to before `after`, all straight as the one before them, as `lines` returns them."""
+        rows = slice(first - 1, after)
+        point, more, motion = path.point[rows], path.more[rows], path.motion[rows]
+        codes = [f" {self.words.motions[m]}" for m in motion[1:].tolist()]
+        columns = [
+            changed(codes, motion[1:] != motion[:-1]),
+            *self.point_words(point),
+            *self.axis_words(more),
+            self.fed_words(motion[1:], path.feed[first:after]),
+        ]
+        self.reached(point[-1].tolist(), more[-1].tolist(), int(motion[-1]))
+        yield from (words[1:] for words in map("".join, zip(*columns, strict=True)))
+
+    def point_words(self, point: Ints, always: bool = False) -> list[list[str]]:
+        """Return by letter the words of points (k, 3) after the first, each after a space; "" for a number that stays, or `always`."""
+        return [
+            changed(self.scale.texts(v[1:], f" {letter}"), (v[1:] != v[:-1]) | always)
+            for letter, v in zip(self.plane.letters, point.T, strict=True)
+        ]
+
+    def axis_words(self, angle: Ints) -> list[list[str]]:
+        """Return by letter the words of rotary axes at angles (k, a) after the first, as `point_words` does."""
+        return [
+            changed(self.degrees.texts(v[1:], f" {letter}"), v[1:] != v[:-1])
+            for letter, v in zip(self.letters, angle.T, strict=True)
+        ]
+
+    def fed_words(self, motion: Ints, feed: Floats) -> list[str]:
+        """Return the words of feeds (k,) in mm/min, each after a space; "" for rapids and where the feed is written already."""
+        found: list[str] = []
+        last: float | None = None
+        for is_fed, value in zip((motion != Motion.RAPID).tolist(), feed.tolist(), strict=True):
+            word = ""
+            if is_fed and value != last:
+                last, text = value, self.scale.feed(value)
+                word, self.feed = "" if text == self.feed else f" F{text}", text
+            found.append(word)
+        return found
+
     def switched(self, mode: FeedMode) -> str:
         """Return the word that switches to another way of giving feeds; the feed must be written again after it."""
         self.feed_mode, self.feed = mode, ""
@@ -113,6 +158,13 @@ class WrittenState:
             for letter, v, old in zip(self.letters, angle, before, strict=True)
             if v != old
         ]
+
+
+def changed(words: list[str], where: Bools) -> list[str]:
+    """Return words (k,), "" for those that do not stand where (k,) it is said."""
+    if where.all():
+        return words
+    return [word if keep else "" for word, keep in zip(words, where.tolist(), strict=True)]
 
 
 def degrees_of(words: IsoWords, scale_class: type[TickScale] = TickScale) -> TickScale:

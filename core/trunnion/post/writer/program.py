@@ -24,6 +24,7 @@ from trunnion.post.writer.helix import block_of, last_of_helix
 from trunnion.post.writer.modal import WrittenState, degrees_of
 from trunnion.post.writer.plane import MILLING, TURNING
 from trunnion.post.writer.rotary import AxisForm, JointForm, ThreeAxes
+from trunnion.post.writer.runs import runs
 from trunnion.post.writer.turning import TurningForm
 from trunnion.shop.kinematics import WorkPosition
 from trunnion.units import trimmed
@@ -208,14 +209,39 @@ class ProgramWriter:
 
     def blocks(self, section: ProgramSection, path: WrittenPath, minutes: Floats) -> Iterator[str]:
         """Yield the blocks of a section after its first, which the tool has reached already."""
-        numbered, lines_of = self.numbered, self.modal.lines
+        numbered = self.numbered
         yield from map(numbered, self.waited(float(path.dwell[0]), section))
-        cycles, begins, after = self.cycles(), {c.first: c for c in path.cycles}, 0
-        rows = zip(
-            path.blocks(), path.more.tolist(), minutes.tolist(), path.dwell.tolist(), strict=True
+        cycles = self.cycles()
+        for first, after, alike in runs(path, minutes):
+            if alike and self.modal.writes_many():
+                yield from map(numbered, cycles.ended())
+                yield from map(numbered, self.modal.straight(path, first, after))
+            else:
+                yield from self.one_by_one(section, path, minutes, range(first, after), cycles)
+        yield from map(numbered, cycles.ended())
+
+    def one_by_one(
+        self,
+        section: ProgramSection,
+        path: WrittenPath,
+        minutes: Floats,
+        rows: range,
+        cycles: CycleCallWriter | CycleWriter,
+    ) -> Iterator[str]:
+        """Yield the blocks of some rows of a section, with all the cycles and helices that begin among them."""
+        numbered, lines_of = self.numbered, self.modal.lines
+        begins, after = {c.first: c for c in path.cycles if c.first in rows}, rows.start
+        part = slice(rows.start, rows.stop)
+        blocks = zip(
+            rows,
+            path.blocks(part),
+            path.more[part].tolist(),
+            minutes[part].tolist(),
+            path.dwell[part].tolist(),
+            strict=True,
         )
-        for row, (block, turned, time, dwell) in enumerate(rows):
-            if row < max(after, 1):
+        for row, block, turned, time, dwell in blocks:
+            if row < after:
                 continue
             if row in begins and (lines := cycles.lines(path, begins[row])):
                 yield from map(numbered, lines)
@@ -230,7 +256,6 @@ class ProgramWriter:
                 yield from map(numbered, lines_of(block, turned, time))
             if dwell > 0.0:
                 yield from map(numbered, self.waited(dwell, section))
-        yield from map(numbered, cycles.ended())
 
     def cycles(self) -> CycleCallWriter | CycleWriter:
         """Return what writes the drilling cycles of a section."""

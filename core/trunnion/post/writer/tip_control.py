@@ -15,7 +15,7 @@ from typing import ClassVar
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.material import leaning_axis
 from trunnion.model.motion.program import ProgramSection
 from trunnion.model.motion.toolpath import Motion
@@ -26,7 +26,7 @@ from trunnion.post.iso_words import IsoWords, code_of
 from trunnion.post.linearize import MARGIN, lines_for_arcs
 from trunnion.post.settings import PostSettings
 from trunnion.post.ticks import TickScale, WrittenPath, written
-from trunnion.post.writer.modal import WrittenState
+from trunnion.post.writer.modal import WrittenState, changed
 from trunnion.post.writer.program import ProgramWriter
 from trunnion.post.writer.rotary import AxisForm, ThreeAxes, inverse_minutes
 from trunnion.post.writer.tilted_plane import TiltedPlane, in_plane_of, plane_across, plane_rows
@@ -54,6 +54,14 @@ class TipState(WrittenState):
         return [
             word + self.vectors.text(v)
             for word, v in zip(self.words.directions, angle, strict=False)
+        ]
+
+    def axis_words(self, angle: Ints) -> list[list[str]]:
+        """Return by number the words of tool axes (k, 3) after the first; "" where the axis stays."""
+        turns = (angle[1:] != angle[:-1]).any(axis=1)
+        return [
+            changed(self.vectors.texts(v[1:], f" {word}"), turns)
+            for word, v in zip(self.words.directions, angle.T, strict=False)
         ]
 
 
