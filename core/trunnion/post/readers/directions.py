@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
-
 from trunnion.findings import BadInput
 from trunnion.model.spindle import FeedMode
 from trunnion.post.readers.sections import Pace, Point
@@ -34,7 +32,7 @@ class Directions(Rotary):
 
     def turns(self, words: Mapping[str, float]) -> bool:
         """Return whether a line has a word of a direction."""
-        return any(word in words for word in self.words)
+        return not words.keys().isdisjoint(self.words)
 
     def turned(self, words: Mapping[str, float]) -> list[float]:
         """Return the direction after a line, in the plane in force; a number of the vector that is left out is 0."""
@@ -44,8 +42,22 @@ class Directions(Rotary):
             return [v / length for v in vector]
         if self.sections.follows:
             axis = self.sections.axis
-            return [math.nan] * 3 if axis is None else np.asarray(axis).tolist()
+            return [math.nan] * 3 if axis is None else list(axis)
         return list(_UPRIGHT)
+
+    def step(self, block: Block, before: Point) -> list[float]:
+        """Return the direction after a line; see `Rotary`."""
+        words = block.words
+        if not self.turns(words):
+            self.refuse_lost(block.line)
+            return self.turned(words)
+        x, y, z = [words.get(word, 0.0) for word in self.words]
+        length = math.hypot(x, y, z)
+        if not self.sections.follows or length < LEAST_VECTOR:
+            self.check(block)
+        angle = [x / length, y / length, z / length]
+        self.refuse_far_turn(block.line, before, angle)
+        return angle
 
     def check(self, block: Block) -> None:
         """Raise `BadInput` for directions that are none, or that nothing follows."""

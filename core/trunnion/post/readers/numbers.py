@@ -22,9 +22,15 @@ class NumberRange:
     unit: str = ""
     slack: float = 0.0
 
+    @property
+    def limits(self) -> tuple[float, float]:
+        """The least and the greatest number that `check` lets pass."""
+        return self.low - self.slack, self.high + self.slack
+
     def check(self, line: int, word: str, value: float) -> None:
         """Raise `BadInput` unless the value that follows a word is in the range; a NaN never is."""
-        if not self.low - self.slack <= value <= self.high + self.slack:
+        low, high = self.limits
+        if not low <= value <= high:
             ends = f"{trimmed(self.low, DECIMALS)} to {trimmed(self.high, DECIMALS)} {self.unit}".rstrip()
             raise BadInput(f"line {line}: {word}{value:.15g} is out of range; allowed is {ends}")
 

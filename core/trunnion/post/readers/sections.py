@@ -202,6 +202,11 @@ class Sections:
         self._waits = 0.0
         self.stance = UNSAID
 
+    @property
+    def local(self) -> Point | None:
+        """Where the tool is as the text counts it; None while that is not known."""
+        return self.at
+
     def operation(self, name: str) -> None:
         """Begin an operation; its tool may still change before the first motion."""
         self._close()

@@ -123,7 +123,7 @@ class TiltedSections(Sections):
         self.matrix = np.eye(3)
         self.known = self.follows = False
         self.level = True
-        self.axis: Floats | None = None
+        self.axis: Point | None = None
         self._local: Point | None = None
 
     @property
@@ -141,7 +141,7 @@ class TiltedSections(Sections):
         self.matrix, self.known, self._local = matrix, known, None
         self.level = bool((matrix == np.eye(3)).all())
         if known:
-            self.axis = matrix[:, 2]
+            self.axis = tuple(matrix[:, 2].tolist())
 
     def follow(self, line: int, code: str, no_plane: str) -> None:
         """Follow the tip from here on: points are tips in the work, directions are vectors; raise `BadInput` in a tilted plane."""
@@ -157,7 +157,7 @@ class TiltedSections(Sections):
         """Tilt the plane of the program to axes (3, 3), columns in the setup frame, and turn the tool along its z, to the side named by
         the text (`Stance`): at the top of the machine, unless it points there; raise `BadInput` elsewhere."""
         axis = self.axis if self.known else None
-        keeps = axis is not None and np.linalg.norm(matrix[:, 2] - axis) <= SAME_DIRECTION
+        keeps = axis is not None and np.linalg.norm(matrix[:, 2] - np.array(axis)) <= SAME_DIRECTION
         if self.at is not None and not keeps:
             raise BadInput(
                 f"line {line}: {code} turns the tool while it is at the work; put {top} first"
@@ -175,7 +175,9 @@ class TiltedSections(Sections):
         """Let the rotary axes stand at angles (a,) rad, None while one is not known: with all at 0 the plane is the setup's own."""
         at_zero = angle is not None and not angle.any()
         self.tilt(np.eye(3), at_zero)
-        self.axis = None if angle is None else axes_of(work_position, angle[None])[0]
+        self.axis = (
+            None if angle is None else tuple(axes_of(work_position, angle[None])[0].tolist())
+        )
         self.stance = UNSAID if angle is None else Stance(0, tuple(angle.tolist()))
 
     def rapid(self, line: int, point: Point, tool: AnyTool, state: CuttingState) -> None:
@@ -237,4 +239,4 @@ class TiltedSections(Sections):
     def _reached(self, point: Point) -> None:
         self._local = point
         if self.at is not None:
-            self.axis = np.array(self.at[3:])
+            self.axis = self.at[3:]

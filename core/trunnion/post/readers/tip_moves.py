@@ -9,7 +9,6 @@ from trunnion.model.motion.toolpath import Motion
 from trunnion.model.tool import AnyTool
 from trunnion.post.readers.directions import Directions
 from trunnion.post.readers.sections import Point
-from trunnion.post.readers.tilted_sections import TiltedSections
 from trunnion.post.readers.word_address.blocks import Block
 from trunnion.post.readers.word_address.moves import ToolMover
 
@@ -17,16 +16,10 @@ from trunnion.post.readers.word_address.moves import ToolMover
 class TipMover(ToolMover):
     """Moves the tool of a text whose control follows the tip and tilts its plane; on three axes as `ToolMover` does."""
 
-    @property
-    def at(self) -> Point | None:
-        """Where the tool is, in the plane in force."""
-        sections = self.state.sections
-        return sections.local if isinstance(sections, TiltedSections) else sections.at
-
     def move(self, block: Block) -> None:
         """Move as the words and the modal motion say; the rotary axes of the machine by themselves at its top alone."""
         if isinstance(self.rotary, Directions):
-            if any(letter in block.words for letter in self.language.rotary):
+            if not block.words.keys().isdisjoint(self.language.rotary):
                 self.turn_axes(block)
                 return
             self.rotary.check(block)

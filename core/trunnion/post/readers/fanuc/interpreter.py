@@ -169,7 +169,10 @@ class FanucControl(TipControl):
         block, comments = super().split(number, line)
         if block is None:
             return None, comments
-        bare = re.sub(r"\s", "", _COMMENT.sub(" ", line.partition(";")[0])).upper()
+        bare = line.partition(";")[0]
+        if "(" in bare:
+            bare = _COMMENT.sub(" ", bare)
+        bare = "".join(bare.split()).upper()
         if found := _POINTLESS.search(bare):
             word = found.group(0)
             raise BadInput(

@@ -104,7 +104,7 @@ class KlartextMover:
                 raise BadInput(
                     f"line {line}: it is not known where the tool points; begin with LN and {listed}"
                 )
-            return tuple(tilted.axis.tolist())
+            return tilted.axis
         x, y, z = vector
         if x is None or y is None or z is None:
             raise BadInput(f"line {line}: LN needs {listed}")

@@ -10,7 +10,7 @@ from trunnion.findings import BadInput
 from trunnion.post.readers.numbers import shown
 from trunnion.post.readers.word_address.blocks import Block, code_text
 
-_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+_NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
 _STRING = r'"[^"]*"'
 _WORD = re.compile(
     rf"""\s*(?:
@@ -21,6 +21,8 @@ _WORD = re.compile(
     )""",
     re.VERBOSE,
 )
+_SIMPLE_WORD = re.compile(rf"(?<!\S)([A-QS-Z][0-9]=|[A-Z])({_NUMBER})(?!\S)")
+"""A letter and its number, or a word like A3= and its number, between spaces: most lines have no others."""
 _ARGUMENT = re.compile(rf"\s*({_STRING}|[^,\"]*)\s*(?:,|$)")
 ALIASES = {"G53": "SUPA", "G153": "SUPA", "G71": "G710"}
 """Codes that say here what another one does: of frames that are suppressed only Z0 is understood, and feeds are metric anyway."""
@@ -56,10 +58,46 @@ def split_sinumerik_line(
 
 
 def _block(line: int, program: str, number_of: Callable[[int, str], float]) -> Block:
+    upper = _upper(program)
+    call, simple = None, _SIMPLE_WORD.findall(upper)
+    if len(simple) == len(upper.split()):
+        codes, words = _simple_words(line, simple)
+    else:
+        codes, words, call = _all_words(line, upper, number_of)
+    if "G4" in codes:
+        if "S" in words:
+            raise BadInput(f"line {line}: a dwell of turns (G4 S) is not understood; use G4 F")
+        if "F" in words:
+            words[DWELL_WORD] = words.pop("F")
+    if call is None:
+        return Block(line, codes, words)
+    if set(words) - {"N"} or set(codes) - {call[0], "MCALL"}:
+        raise BadInput(f"line {line}: {call[0]} with other words in its line; write two lines")
+    return CallBlock(line, codes, words, *call)
+
+
+def _simple_words(line: int, found: list[tuple[str, str]]) -> tuple[list[str], dict[str, float]]:
+    """Return the codes and the words of a line of simple words, each with its number, as `_all_words` does."""
+    codes: list[str] = []
+    words: dict[str, float] = {}
+    for key, number in found:
+        if key in "GM":
+            code = code_text(line, key, number)
+            codes.append(ALIASES.get(code, code))
+        elif key in words:
+            raise BadInput(f"line {line}: two {key} words; keep one")
+        else:
+            words[key] = float(number) + 0.0
+    return codes, words
+
+
+def _all_words(
+    line: int, upper: str, number_of: Callable[[int, str], float]
+) -> tuple[list[str], dict[str, float], tuple[str, tuple[str, ...]] | None]:
+    """Return the codes and the words of any line, and its call by name and arguments."""
     codes: list[str] = []
     words: dict[str, float] = {}
     call: tuple[str, tuple[str, ...]] | None = None
-    upper = _upper(program)
     at = 0
     while at < len(upper):
         found = _WORD.match(upper, at)
@@ -89,16 +127,7 @@ def _block(line: int, program: str, number_of: Callable[[int, str], float]) -> B
                     f"line {line}: parameters ({name}=) are not understood; write the numbers themselves"
                 )
             _set(line, words, name if len(name) == 1 else name + "=", float(part["value"]) + 0.0)
-    if "G4" in codes:
-        if "S" in words:
-            raise BadInput(f"line {line}: a dwell of turns (G4 S) is not understood; use G4 F")
-        if "F" in words:
-            words[DWELL_WORD] = words.pop("F")
-    if call is None:
-        return Block(line, codes, words)
-    if set(words) - {"N"} or set(codes) - {call[0], "MCALL"}:
-        raise BadInput(f"line {line}: {call[0]} with other words in its line; write two lines")
-    return CallBlock(line, codes, words, *call)
+    return codes, words, call
 
 
 def _set(line: int, words: dict[str, float], key: str, value: float) -> None:

@@ -18,9 +18,10 @@ from trunnion.post.readers.sections import Sections, UprightPoses, operation_of
 from trunnion.post.readers.tools import check_tool, check_work_position
 from trunnion.post.readers.word_address.blocks import Block, split_line
 from trunnion.post.readers.word_address.joints import Joints
-from trunnion.post.readers.word_address.language import ControlLanguage, listed
+from trunnion.post.readers.word_address.language import NO_LIMITS, ControlLanguage, listed
 from trunnion.post.readers.word_address.modes import MEANINGS, Modes
 from trunnion.post.readers.word_address.moves import ToolMover
+from trunnion.post.readers.word_address.position_lines import PositionLines
 from trunnion.post.readers.word_address.rotary import Rotary
 from trunnion.post.readers.word_address.state import ModalState
 from trunnion.shop.kinematics import WorkPosition
@@ -54,6 +55,7 @@ class Control:
         self.state = ModalState(tools=tools, setup=setup, sections=self.sections_of(setup))
         self.modes = self.modes_class(self.language, self.state)
         self.moves = self.mover_class(self.language, self.state, self.rotary_axes())
+        self.straight: PositionLines | None = None
         self.last_n = -1.0
         self.begun = self.ended = False
 
@@ -102,6 +104,14 @@ class Control:
     def run(self, block: Block) -> None:
         """Do what one line says."""
         words, codes, language = block.words, block.codes, self.language
+        if not codes and words.keys() <= language.positions and len(words) > ("N" in words):
+            if self.straight is None and not self.ended:
+                self.straight = self.moves.straight()
+            if self.straight is not None:
+                self.check_words(block.line, words)
+                self.straight.move(block)
+                return
+        self.straight = None
         self.begun = True
         self.check(block)
         if len(codes) > 1 or (codes and codes[0] not in language.motions):
@@ -136,16 +146,11 @@ class Control:
 
     def check_words(self, line: int, words: Mapping[str, float]) -> None:
         """Refuse letters that no word of this program begins with, numbers out of range, and lines out of order."""
-        letters, ranges = self.language.letters, self.language.ranges
+        limits = self.language.limits
         for letter, value in words.items():
-            if letter not in letters:
-                rotary = self.language.rotary
-                axes = f"a program for the axes XYZ{rotary}" if rotary else "a three-axis program"
-                raise BadInput(
-                    f"line {line}: the word {letter} is not understood by {axes}; remove it"
-                )
-            if letter in ranges:
-                ranges[letter].check(line, letter, value)
+            low, high = limits.get(letter, NO_LIMITS)
+            if not low <= value <= high:
+                self.language.refuse_word(line, letter, value)
         n = words.get("N")
         if n is not None:
             if n <= self.last_n:

@@ -27,6 +27,8 @@ _TAKEN_BY = {
     "highest": "surface speed",
 }
 """The meaning of the code that takes a letter of each role."""
+NO_LIMITS = (math.inf, -math.inf)
+"""Ends of a range that no number is in."""
 _NEEDED = {"dwell": "dwell", "path tolerance": "tolerance", "surface speed": "highest"}
 """The role without whose letter a meaning says nothing."""
 
@@ -35,9 +37,10 @@ class ControlLanguage:
     """The codes and letters that a text may have, for the axes of a machine.
 
     `meanings` says what each known code makes the control do; `motions`, `units` (mm), `coolants` what those of one kind mean. `letters`
-    are those of all words, `ranges` the numbers after them; `moves` are letters of a move, `arc` of an arc, `states` those that change the
-    modal state without a code; `takers` are the codes that take a letter. A code or letter is "" where the control has none of its kind.
-    `known` are the meanings that the control understands.
+    are those of all words, `ranges` the numbers after them, `limits` their ends; `moves` are letters of a move, `arc` of an arc, `states`
+    those that change the modal state without a code, `positions` those that say where a straight move ends and nothing else; `takers` are
+    the codes that take a letter. A code or letter is "" where the control has none of its kind. `known` are the meanings that the control
+    understands.
     """
 
     def __init__(
@@ -141,6 +144,12 @@ class ControlLanguage:
                 a.name: NumberRange(a.low, a.high, "degrees", math.degrees(SLACK))
                 for a in work_position.machine.rotary
             }
+        positions = frozenset((*"NXYZ", *self.directions))
+        self.positions = positions - self.takers.keys() - self.states
+        self.limits = {
+            letter: self.ranges[letter].limits if letter in self.ranges else (-math.inf, math.inf)
+            for letter in self.letters
+        }
 
     def _first(self, meaning: str) -> str:
         return next((code for code, m in self.meanings.items() if m == meaning), "")
@@ -150,6 +159,17 @@ class ControlLanguage:
         if code in self.refused:
             return f"{code}: {self.refused[code].replace('{code}', code)}"
         return f"{code} is not understood; remove it or write what it does in known words"
+
+    def refuse_word(self, line: int, letter: str, value: float) -> None:
+        """Raise `BadInput` for a word beyond its `limits`: no word of this program begins with its letter, or it is out of range."""
+        if letter not in self.letters:
+            axes = (
+                f"a program for the axes XYZ{self.rotary}"
+                if self.rotary
+                else "a three-axis program"
+            )
+            raise BadInput(f"line {line}: the word {letter} is not understood by {axes}; remove it")
+        self.ranges[letter].check(line, letter, value)
 
     def refuse_two_of_a_group(self, line: int, codes: list[str]) -> None:
         """Raise `BadInput` for two codes of one modal group."""

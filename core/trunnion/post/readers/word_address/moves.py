@@ -17,6 +17,7 @@ from trunnion.post.readers.word_address.arcs import centre_by_offset, centre_by_
 from trunnion.post.readers.word_address.blocks import Block
 from trunnion.post.readers.word_address.cycles import UP, hole_of, path_over
 from trunnion.post.readers.word_address.language import ControlLanguage, listed
+from trunnion.post.readers.word_address.position_lines import PositionLines, end_of
 from trunnion.post.readers.word_address.rotary import Rotary
 from trunnion.post.readers.word_address.state import ModalCycle, ModalState
 
@@ -48,7 +49,7 @@ class ToolMover:
     @property
     def at(self) -> Point | None:
         """Where the tool is as the text counts it; None while that is not known."""
-        return self.state.sections.at
+        return self.state.sections.local
 
     def move(self, block: Block) -> None:
         """Move as the words and the modal motion say."""
@@ -76,6 +77,36 @@ class ToolMover:
             centre = self.centre(block, motion, point)
             centre = (centre[1], 0.0, centre[0]) if state.in_zx else centre
         self.feed(block, motion, point, centre, tool)
+
+    def straight(self) -> PositionLines | None:
+        """Return what moves by lines of a position alone just as `move` does, until a line changes the modal state; None where `move` must
+        look at each of them, or refuses them. A class whose `move` does more with them returns None."""
+        state = self.state
+        fed = state.motion == Motion.LINE
+        if (
+            not (fed or state.motion == Motion.RAPID)
+            or (fed and state.feed_mode is not FeedMode.MINUTE)
+            or state.in_zx
+            or state.cycle is not None
+            or self.rotary.letters
+            or self.at is None
+            or not state.length_on
+        ):
+            return None
+        try:
+            tool = self.ready(0)
+            if fed:
+                self.check_feed(0, tool)
+        except BadInput:
+            return None
+        return PositionLines(
+            sections=state.sections,
+            rotary=self.rotary,
+            tool=tool,
+            cutting=state.cutting(),
+            pace=Pace(state.feed) if fed else None,
+            units=(state.x_unit, state.unit, state.unit),
+        )
 
     def feed(
         self, block: Block, motion: Motion, point: Point, centre: Point, tool: AnyTool
@@ -252,13 +283,7 @@ class ToolMover:
             raise BadInput(
                 f"line {block.line}: a move without the tool's length; put {language.length_of(tool)} first"
             )
-        x, y, z = words.get("X"), words.get("Y"), words.get("Z")
-        return (
-            at[0] if x is None else x * state.x_unit,
-            at[1] if y is None else y * unit,
-            at[2] if z is None else z * unit,
-            *angle,
-        )
+        return end_of(words, at, (state.x_unit, unit, unit), angle)
 
     def first_target(self, block: Block, motion: Motion, tool: AnyTool) -> Point | None:
         """Return the end of a move after a tool change, once X, Y and Z are known; None until then."""

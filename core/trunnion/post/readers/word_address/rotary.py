@@ -23,7 +23,7 @@ class Rotary:
 
     def turns(self, words: Mapping[str, float]) -> bool:
         """Return whether a line has a word of a rotary axis."""
-        return any(letter in words for letter in self.letters)
+        return not words.keys().isdisjoint(self.letters)
 
     def turned(self, words: Mapping[str, float]) -> list[float]:
         """Return where the axes stand after a line."""
@@ -33,6 +33,12 @@ class Rotary:
                 for letter, angle in zip(self.letters, self.angle, strict=True)
             ]
         return self.angle
+
+    def step(self, block: Block, before: Point) -> list[float]:
+        """Return where the axes stand after a line, from where they stood; raise `BadInput` for a turn that is not understood."""
+        angle = self.turned(block.words)
+        self.refuse_far_turn(block.line, before, angle)
+        return angle
 
     def refuse_far_turn(self, line: int, before: Point, after: list[float]) -> None:
         """Raise `BadInput` for a turn in one block of more than the proof looks at."""
