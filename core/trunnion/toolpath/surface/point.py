@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -29,9 +30,7 @@ from trunnion.toolpath.contact_passes.axis_fields import (
     interpolated,
     leaning,
 )
-from trunnion.toolpath.contact_passes.axis_search import (
-    LeanLimits,
-)
+from trunnion.toolpath.contact_passes.axis_search import LeanLimits, free_axes
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.leaning_passes import (
@@ -55,6 +54,8 @@ from trunnion.units import trimmed
 
 SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
+SAMPLED = 2_000
+"""Contacts of what is left that say how much of it an axis would come to if nothing stood there."""
 
 
 @settings("surface.point")
@@ -235,7 +236,12 @@ def point(
             remaining=done.remaining * more.remaining,
         )
     stepover = stepover_on_plane(max(ball.radius, drive.height), drive.height)
-    findings = _remaining_findings(done, drive, tool)
+    blocked = 0.0
+    if around.has_stock and done.rest:
+        some = _some_of(done.rest, SAMPLED)
+        bare = free_axes(some, field, tool, query, limits, drive.allowance)
+        blocked = float(np.concatenate([axes.free for axes in bare]).mean())
+    findings = _remaining_findings(done, drive, tool, blocked)
     if not done.passes:
         return Planned(findings=(*pattern_findings, *findings))
     parameters = LinkParameters(
@@ -362,19 +368,37 @@ def _numbers(text: str) -> list[float]:
         return []
 
 
+def _some_of(lines: Sequence[Contacts], most: int) -> list[Contacts]:
+    """Return lines evenly taken from all, with no more contacts than wanted and one line's more."""
+    each = max(1, math.ceil(sum(len(line) for line in lines) / most))
+    return list(lines[::each])
+
+
 def _remaining_findings(
-    done: PointMilledPasses, drive: SurfaceDrive, tool: Tool
+    done: PointMilledPasses, drive: SurfaceDrive, tool: Tool, blocked: float
 ) -> tuple[Finding, ...]:
+    """Return what is left, of which a share is `blocked` by stock."""
     corners = drive.skin.points[drive.skin.triangles[drive.skin.of(drive.faces)]]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = done.remaining * 0.5 * float(np.linalg.norm(across, axis=1).sum())
-    if area < SMALLEST_LEFTOVER:
-        return ()
-    return (
-        warning(
-            "point.left",
-            f"{area:.0f} mm2 of {drive.feature} stay: {tool.name} finds no way to lean there",
-            drive.feature,
-            remedy="choose a smaller or longer cutter, a slimmer holder, or let it lean further from the normal",
-        ),
-    )
+    found = []
+    if area * blocked >= SMALLEST_LEFTOVER:
+        found.append(
+            warning(
+                "point.in-stock",
+                f"about {area * blocked:.0f} mm2 of {drive.feature} stay: stock that no roughing took is in the way of every axis of "
+                f"{tool.name} there",
+                drive.feature,
+                remedy="rough it from another direction, or as the channel between such faces by the strategies of a family that knows it",
+            )
+        )
+    if area * (1.0 - blocked) >= SMALLEST_LEFTOVER:
+        found.append(
+            warning(
+                "point.left",
+                f"{area * (1.0 - blocked):.0f} mm2 of {drive.feature} stay: {tool.name} finds no way to lean there",
+                drive.feature,
+                remedy="choose a smaller or longer cutter, a slimmer holder, or let it lean further from the normal",
+            )
+        )
+    return tuple(found)

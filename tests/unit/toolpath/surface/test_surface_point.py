@@ -21,6 +21,7 @@ from trunnion.toolpath.contact_passes.axis_search import LeanLimits, thickened
 from trunnion.toolpath.contact_passes.contacts import Contacts, slerp
 from trunnion.toolpath.contact_passes.passes import UPRIGHT
 from trunnion.toolpath.contact_passes.run_poses import ASTRAY
+from trunnion.toolpath.stock.remaining import RemainingStock
 from trunnion.toolpath.surface.point import PointSettings, field_of, grooving, milled, point
 
 CHORD = 0.0005
@@ -297,6 +298,24 @@ def test_passes_of_constant_scallop_are_milled_by_points_too() -> None:
     ).all()
     cut = path.position[path.mark == 0]
     assert np.ptp(cut[:, 0]) > 19.0 and np.ptp(cut[:, 1]) > 4.5
+
+
+@pytest.mark.parametrize("roughed", [False, True])
+def test_what_lies_under_stock_stays_and_is_told_apart_from_what_no_lean_reaches(roughed) -> None:
+    drive, setup, stock = strip()
+    block = np.argwhere(np.ones((30, 60, 40))) + [-15.0, -25.0, 16.0]
+    standing = RemainingStock(points=np.zeros((0, 3)) if roughed else block, cell=1.0)
+    drive = replace(drive, query_for=Boxes(FLOOR), remaining_stock=standing)
+    plan = point(
+        drive, BALL, DATA, stock, setup, choose(PointSettings, {"surface.point.steepest": 40.0})
+    )
+    told = [f for f in plan.findings if f.code in ("point.left", "point.in-stock")]
+    assert [f.code for f in told] == ([] if roughed else ["point.in-stock"])
+    if told:
+        # Below it the neck comes up to it 13 mm over the tip, however far it leans; 160 are all.
+        assert 60.0 < float(told[0].text.split()[1]) < 160.0
+        tips = plan.path.position[plan.path.mark == 0] + 16.0 * plan.path.axis[plan.path.mark == 0]
+        assert tips[:, 0].min() > 10.0
 
 
 def test_after_an_earlier_cutter_only_what_it_left_is_milled() -> None:
