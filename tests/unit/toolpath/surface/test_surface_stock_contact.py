@@ -106,6 +106,31 @@ def test_where_the_shank_is_wider_than_the_cutter_steps_make_no_space_for_it():
     assert kept and 9.0 <= min(p.tip[:, 2].min() for p in kept) <= 10.0 and findings
 
 
+@pytest.mark.parametrize(("thick", "off", "clear"), [(0.8, 1.05, True), (2.5, 2.0, False)])
+def test_what_is_left_on_a_wall_is_told_from_the_rim_that_the_field_keeps_there(thick, off, clear):
+    """The wall ends at y = 15; beside it stock of a thickness stands as high as the wall."""
+    floor = grid(lambda x, y: 0.0 * x, n=8)
+    wall = grid(lambda x, y: 9.0 + 0.0 * x, n=8, high=(30.0, 15.0), tag=2)
+    skin = joined(floor, wall)
+    drive, _, stock = driven(skin, top=20.0)
+    y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
+    heights = np.where((y < 15.0 + thick) & (y > -5.0), 9.3, 0.3) + np.zeros(stock.heights.shape)
+    kept, findings = without_stock_contact(
+        [along(15.0 + off)], drive, SLENDER, replace(stock, heights=heights), 0.5
+    )
+    assert bool(kept) is clear and bool(findings) is not clear
+
+
+def test_a_ridge_away_from_walls_is_stock_though_it_is_narrow():
+    drive, _, stock = trench(30.0)
+    y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
+    heights = stock.heights.copy()
+    heights[:, np.abs(y - 15.0) < 0.9] = 12.0
+    stock = replace(stock, heights=heights)
+    assert not without_stock_contact([along(15.0)], drive, SLENDER, stock, 0.5)[0]
+    assert without_stock_contact([along(18.0)], drive, SLENDER, stock, 0.5)[0]
+
+
 STRATEGIES = (
     (parallel, ParallelSettings()),
     (constant, ConstantSettings()),

@@ -1,6 +1,8 @@
 """Passes of an upright tool without what its neck, shank or holder would meet stock on.
 
 Roughing can't come everywhere: beside what it left a slender cutter may still touch the faces, with its flutes deep below the top of it.
+The planner's field of heights is higher than the stock: round every cut by a part of a cell, and by more beside walls, where cells are
+never cut whole. Heights that may be no more than that are not counted: what is narrower than that, and what is as near to the part.
 """
 
 from __future__ import annotations
@@ -15,13 +17,16 @@ from trunnion.findings import Finding, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.kernels import heightfield
 from trunnion.model.tool import Tool
+from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.toolpath.contact_passes.choices import IN_STOCK
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
+EDGE = 1
+"""Cells round a cut that the field may keep high though the cutter has been there."""
 RIM = 2
-"""Cells round which a field is as high as beside them: how wide walls keep it high though all beside them is cut."""
+"""Cells beside walls that it keeps high though all beside them is cut."""
 SHORTEST = 0.05
 """mm: a shorter piece of a pass between two interruptions is left out."""
 SMALLEST_LEFTOVER = 0.5
@@ -34,18 +39,18 @@ def without_stock_contact(
     """Return what of passes in their order, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes, and a
     finding of the area that is left.
 
-    What passes before have cut is gone. Where the field's rims beside walls can't be told from stock, stock is not seen.
+    What passes before have cut is gone. What stands no higher over the part about it than the flutes are long is theirs to cut.
     """
     rows = np.array(tool.profile()).reshape(-1, 4)
     if not len(passes) or not len(rows) or not all(p.upright for p in passes):
         return list(passes), ()
-    field = np.ascontiguousarray(
-        minimum_filter(stock.heights, 2 * RIM + 1, mode="nearest"), dtype=np.float64
-    )
+    field = _lowest_within(stock.heights, EDGE)
     tips, owner, segment = _spaced(passes, stock.cell)
     doubtful = ~_is_free(field, stock, tips, rows)
     if not doubtful.any():
         return list(passes), ()
+    _clear_of_part(field, stock, drive, tips[doubtful], tool)
+    field = np.maximum(field, _lowest_within(stock.heights, RIM))
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
     kept, left, over = list[Pass](), 0.0, 0.0
     for k, one in enumerate(passes):
@@ -67,6 +72,11 @@ def without_stock_contact(
             _lower(field, stock, piece, tool)
         kept += pieces
     return kept, _findings(left * stepover, over, drive, tool)
+
+
+def _lowest_within(heights: Floats, cells: int) -> Floats:
+    """Return a field that is as low in each cell as the lowest of those round it."""
+    return np.ascontiguousarray(minimum_filter(heights, 2 * cells + 1, mode="nearest"), np.float64)
 
 
 def _spaced(passes: Sequence[Pass], step: float) -> tuple[Floats, Ints, Ints]:
@@ -99,6 +109,26 @@ def _is_free(field: Floats, stock: PlanningStock, tips: Floats, rows: Floats) ->
     return clear
 
 
+def _clear_of_part(
+    field: Floats, stock: PlanningStock, drive: SurfaceDrive, tips: Floats, tool: Tool
+) -> None:
+    """Clear a field, where the body of a tool at tips (k, 3) may come, of heights that are those of the part within a rim, or of what lies
+    on it no thicker than the flutes are long."""
+    widest = max(max(r0, r1) for _, r0, _, r1 in tool.profile())
+    near = np.zeros(field.shape, dtype=bool)
+    cell = np.floor((tips[:, :2] - stock.corner) / stock.cell).astype(np.int64)
+    near[tuple(np.clip(cell, 0, np.array(field.shape) - 1).T)] = True
+    near = maximum_filter(near, 2 * (math.ceil(widest / stock.cell) + 1) + 1, mode="nearest")
+    rows = np.argwhere(near & (field > float(tips[:, 2].min()) + tool.flute_length))
+    if not len(rows):
+        return
+    centres = stock.corner + (rows + 0.5) * stock.cell
+    lowest = float(drive.low[2]) - tool.flute_length
+    part = drive.skin.drop.drop(centres, level_disc((RIM + 0.5) * stock.cell), lowest)
+    some = tuple(rows[field[tuple(rows.T)] <= part + tool.flute_length].T)
+    field[some] = -np.inf
+
+
 def _pieces(one: Pass, blocked: Ints) -> list[Pass]:
     """Return the pieces of a pass without moves of it."""
     free = np.ones(len(one) - 1, dtype=bool)
@@ -111,7 +141,7 @@ def _pieces(one: Pass, blocked: Ints) -> list[Pass]:
 def _lower(field: Floats, stock: PlanningStock, one: Pass, tool: Tool) -> None:
     """Take a pass off a field in which each cell is as high as the lowest near it: as wide as the cutter and that."""
     starts, ends = (np.ascontiguousarray(v) for v in (one.tip[:-1], one.tip[1:]))
-    wider = (RIM + heightfield.HALF_DIAGONAL) * stock.cell
+    wider = (EDGE + heightfield.HALF_DIAGONAL) * stock.cell
     heightfield.zmap_cut(
         field,
         *stock.corner,
