@@ -13,6 +13,7 @@ from milling import mill
 from samples import read, written
 from trunnion import tolerance
 from trunnion.geometry.frame import WORLD
+from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Box
 from trunnion.model.setup import Setup
 from trunnion.model.verdict import Outcome
@@ -163,6 +164,29 @@ def test_a_shank_as_thick_as_the_cutter_keeps_off_a_taller_wall() -> None:
 
 
 # which is taken
+
+
+@pytest.mark.parametrize("made", [walled, grooved, boss])
+@pytest.mark.parametrize("clearances", [BARE, KEEPING])
+def test_near_an_area_the_free_area_is_the_same_when_nothing_else_is_looked_at(
+    made, clearances
+) -> None:
+    space = spaced(made())
+    for land in lands(space):
+        for tool in MILLS:
+            whole = PartAbove(space).free(land.z, tool, clearances).intersect(land.region)
+            near = PartAbove(space).free(land.z, tool, clearances, land.region)
+            near = near.intersect(land.region)
+            assert near.minus(whole).area + whole.minus(near).area < 1e-6
+
+
+def test_no_section_is_made_where_nothing_near_is_as_high(monkeypatch) -> None:
+    space = spaced(walled())
+    part_above, tool = PartAbove(space), MILLS[0]
+    monkeypatch.setattr(type(space.part), "section", lambda *_: pytest.fail("a section"))
+    far = Region.rectangle(25.0, 10.0, 35.0, 20.0)
+    free = part_above.free(6.0, tool, BARE, far)
+    assert free.intersect(far).area == pytest.approx(far.area)
 
 
 def test_the_largest_that_covers_nearly_all_is_taken_and_comes_back_to_the_foot_of_the_wall() -> (

@@ -130,16 +130,16 @@ def _top_cutter(
     for lateral in (kept, 0.0):
         clearances = LandClearances(lateral=lateral, around=kept, above=state.route.reach_clearance)
         for tool in _end_mills(state):
-            if all(
-                _covers(land, part_above.free(land.z, tool, clearances), tool) for land in lands
-            ):
+            if all(_covers(land, part_above, tool, clearances) for land in lands):
                 return tool, clearances
     return None, clearances
 
 
-def _covers(land: Land, free: Region, tool: Tool) -> bool:
+def _covers(land: Land, part_above: PartAbove, tool: Tool, clearances: LandClearances) -> bool:
     """Return whether an end mill covers a land from positions that leave it some space to move."""
-    axis_region = free.offset(-tool.radius - SPARE)
+    # Its axis goes over the land's rim by less than its radius and some space, and is kept off by what is as far beside that.
+    near = land.region.offset(2.0 * (tool.radius + SPARE))
+    axis_region = part_above.free(land.z, tool, clearances, near).offset(-tool.radius - SPARE)
     if not axis_region:
         return False
     flat = tool.radius - tool.corner_radius

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
@@ -93,30 +94,66 @@ class PartAbove:
     def _hanging(self, z: float) -> Region:
         """Return the shadow of what faces downwards above a height: together with the section there it is all that is above."""
         skin = self.space.skin
-        corners = skin.points[skin.triangles]
+        corners = skin.points[skin.triangles[self._tops() > z]]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        hangs = (normal[:, 2] < -UNDER * np.linalg.norm(normal, axis=1)) & (
-            corners[:, :, 2].max(axis=1) > z
-        )
+        hangs = normal[:, 2] < -UNDER * np.linalg.norm(normal, axis=1)
         if not hangs.any():
             return EMPTY_REGION
         return plan_area_above(corners[hangs], z, 2.0 * skin.bound)
 
-    def free(self, z: float, tool: Tool, clearances: LandClearances) -> Region:
+    def _tops(self) -> Floats:
+        """Return how high (t,) the triangles of the skin reach."""
+        first, second, third = self.space.skin.points[:, 2][self.space.skin.triangles].T
+        return np.asarray(np.maximum(np.maximum(first, second), third))
+
+    def _beside(self, z: float, within: Region | None, more: float) -> Region:
+        """Return what the part has above a height, of the box around an area and some mm more alone where one is given."""
+        if within is None:
+            return self.over(z)
+        low, high = within.box()
+        low, high = low - more, high + more
+        if not self._reaches(z, low, high):
+            return EMPTY_REGION
+        return self.over(z).intersect(Region.rectangle(*low.tolist(), *high.tolist()))
+
+    def _reaches(self, z: float, low: Floats, high: Floats) -> bool:
+        """Return whether any triangle reaches higher than a height in a box in plan with corners (2,): where none does the part is no
+        higher, but for the bound of its triangles, for there is none of it without surface above."""
+        skin = self.space.skin
+        corners = skin.points[skin.triangles[self._tops() > z]][:, :, :2]
+        inside = (corners.max(axis=1) >= low - skin.bound) & (
+            corners.min(axis=1) <= high + skin.bound
+        )
+        return bool(inside.all(axis=1).any())
+
+    def free(
+        self,
+        z: float,
+        tool: Tool,
+        clearances: LandClearances,
+        within: Region | None = None,
+    ) -> Region:
         """Return the plan area that the envelope of an end mill may be in, its tip at a height: what is in its way, and in that of shank
-        and holder, is left out. It goes on past the blank."""
-        obstacles = [self.over(z + SKIM)]
+        and holder, is left out. It goes on past the blank.
+
+        Where `within` is given it is not looked at outside the box around that, and what is higher by less than the bound of the part's
+        triangles may be missed: enough to choose a tool by, not to move it."""
+        obstacles = [self._beside(z + SKIM, within, 0.0)]
         if clearances.lateral > 0.0:
-            obstacles.append(self.over(z + SIDE).offset(clearances.lateral))
+            lateral = clearances.lateral
+            obstacles.append(self._beside(z + SIDE, within, lateral).offset(lateral))
         for z0, r0, _, r1 in tool.profile():
             more, height = (
                 max(r0, r1) - tool.radius,
                 z + max(SKIM, STEP * math.floor((z0 - clearances.above) / STEP)),
             )
             if more > -tolerance.COINCIDENT:
-                obstacles.append(self.over(height).offset(more + clearances.around))
+                grown = more + clearances.around
             elif clearances.lateral > 0.0:
-                obstacles.append(self.over(height).offset(max(NECK, clearances.lateral)))
+                grown = max(NECK, clearances.lateral)
+            else:
+                continue
+            obstacles.append(self._beside(height, within, grown).offset(grown))
         return self.space.around().minus(union_all(obstacles))
 
 
