@@ -96,6 +96,16 @@ def test_what_is_free_within_an_area_is_what_is_free_of_it() -> None:
         assert free.minus(expected).area == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.parametrize("limited", [None, GroundBounds(tags=(BOSS,))])
+@pytest.mark.parametrize("z", [0.0, 0.3, HIGH + 1.0])
+def test_no_cutter_may_be_where_its_tip_may_not(limited, z) -> None:
+    laid = ground(limited=limited)
+    tip = laid.free_for_tip(z)
+    for tool in (mill(4.0), mill(10.0), mill(6.0, flute_length=8.0)):
+        free = laid.free(z, tool, 1.0, 1.0)
+        assert (free or limited) and free.minus(tip).area < 1e-6
+
+
 def test_layers_are_a_step_thick_but_the_first_and_hold_the_tops_of_bosses() -> None:
     found = layers_down(10.0, 0.3, 4.0, (8.0, 7.6, 7.59, 5.0, 0.0), 0.3)
     heights = [height for layer in found for height in (layer.top, layer.bottom)]

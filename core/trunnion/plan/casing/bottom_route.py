@@ -96,9 +96,12 @@ def plan_layers(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
     for tool in _rough_candidates(state, ground):
         if tool.diameter > FALLING * last.diameter or tool.diameter < SMALLEST:
             continue
+        tip = ground.free_for_tip(state.route.floor_allowance)
+        if not _opens(_cleared(state, tip, tool, ring), reached, tool):
+            # Then it opens no gap with its shank and holder in the way either.
+            continue
         more = _roughed(state, pocket, ground, tool, ring)
-        opened = more.minus(reached).opened(HAIR).split()
-        if max((piece.area for piece in opened), default=0.0) < OPENED * tool.diameter**2:
+        if not _opens(more, reached, tool):
             continue
         _add_layers(state, stage, pocket, ground, tool, f"-{n}")
         last, reached, n = tool, more, n + 1
@@ -227,8 +230,20 @@ def _roughed(
     wall = state.route.wall_allowance
     around = cutter_clearance(state, ground, tool, pocket, wall)
     free = ground.free(state.route.floor_allowance, tool, around, state.route.reach_clearance)
-    axis_region = free.offset(-tool.radius - wall)
-    return axis_region.offset(tool.radius + wall).intersect(ring) if axis_region else axis_region
+    return _cleared(state, free, tool, ring)
+
+
+def _cleared(state: CasingPlanState, free: Region, tool: Tool, ring: Region) -> Region:
+    """Return what of a ring a roughing cutter clears that stays in a free area."""
+    kept = tool.radius + state.route.wall_allowance
+    axis_region = free.offset(-kept)
+    return axis_region.offset(kept).intersect(ring) if axis_region else axis_region
+
+
+def _opens(more: Region, reached: Region, tool: Tool) -> bool:
+    """Return whether what a cutter clears has a gap or corner, not reached before, that is worth roughing with it."""
+    opened = more.minus(reached).opened(HAIR).split()
+    return max((piece.area for piece in opened), default=0.0) >= OPENED * tool.diameter**2
 
 
 def cutter_clearance(

@@ -231,6 +231,15 @@ class DevelopedGround:
             if more > -around:
                 grown = max(more + around, 0.0)
                 obstacles.append(self._near(height, within, grown).offset(grown))
+        return self._free_of(obstacles, within)
+
+    def free_for_tip(self, z: float) -> Region:
+        """Return the area that a cutter may be in, its tip at a height, whatever is in the way of its shank and holder: no less than
+        `free`."""
+        return self._free_of([self._near(z + SKIM, self.limit, 0.0)], self.limit)
+
+    def _free_of(self, obstacles: Sequence[Region], within: Region | None) -> Region:
+        """Return what of an area, of all that is looked at where it is None, is free of obstacles."""
         area = self.around() if within is None else within
         if self.limit is not None:
             area = area.intersect(self.limit)
