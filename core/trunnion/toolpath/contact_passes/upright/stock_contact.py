@@ -49,7 +49,7 @@ def without_stock_contact(
     doubtful = ~_is_free(field, stock, tips, rows)
     if not doubtful.any():
         return list(passes), ()
-    _clear_of_part(field, stock, drive, tips[doubtful], tool)
+    _take_part_off(field, stock, drive, tips[doubtful], tool)
     field = np.maximum(field, _lowest_within(stock.heights, RIM))
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
     kept, left, over = list[Pass](), 0.0, 0.0
@@ -109,10 +109,10 @@ def _is_free(field: Floats, stock: PlanningStock, tips: Floats, rows: Floats) ->
     return clear
 
 
-def _clear_of_part(
+def _take_part_off(
     field: Floats, stock: PlanningStock, drive: SurfaceDrive, tips: Floats, tool: Tool
 ) -> None:
-    """Clear a field, where the body of a tool at tips (k, 3) may come, of heights that are those of the part within a rim, or of what lies
+    """Take off a field, where the body of a tool at tips (k, 3) may come, heights that are those of the part within a rim, or of what lies
     on it no thicker than the flutes are long."""
     widest = max(max(r0, r1) for _, r0, _, r1 in tool.profile())
     near = np.zeros(field.shape, dtype=bool)
