@@ -39,6 +39,12 @@ from trunnion.part.topology.identity import (
 from trunnion.part.topology.measure import open_edges
 
 T = TypeVar("T")
+TURNED = tuple(
+    tolerance.COINCIDENT * np.array(way)
+    for way in ((0.0, 0.0, 0.0), (0.9, 0.5, 0.7), (-0.7, 0.9, 0.5))
+)
+"""What is added to the unit normal of a plane, try by try: the CAD kernel misses a plane that is off a symmetric place by about its own
+confusion, as across the seam of a cylinder."""
 REACH = 1.0
 """mm that a position of a drawn cut may be away from the face: a click on a coarse picture's triangles is."""
 
@@ -93,8 +99,10 @@ def _pieces(face: Shape, cut: Cut, where: str) -> list[Shape]:
     """Return the pieces of a face, those that keep the tag's side first, the larger first on either side."""
     positions = np.array(cut.places, dtype=np.float64).reshape(-1, 3)
     curve = None if cut.is_plane else DrawnCurve(face, positions, REACH, where)
-    tool = _plane(face, positions[0], np.array(cut.normal)) if curve is None else curve.edge()
-    pieces = faces_of(_split(face, [tool]).Shape())
+    if curve is None:
+        pieces = _cut_by_plane(face, positions[0], np.array(cut.normal))
+    else:
+        pieces = faces_of(_split(face, [curve.edge()]).Shape())
     if len(pieces) < 2:
         raise BadInput(
             f"{where}: the cut doesn't divide it; "
@@ -116,6 +124,18 @@ def _pieces(face: Shape, cut: Cut, where: str) -> list[Shape]:
         ),
     )
     return [pieces[k] for k in order]
+
+
+def _cut_by_plane(face: Shape, position: Floats, normal: Floats) -> list[Shape]:
+    """Return the faces that a plane parts a face into; the face itself where it doesn't."""
+    unit = normal / np.linalg.norm(normal)
+    for turn in TURNED:
+        pieces = faces_of(_split(face, [_plane(face, position, unit + turn)]).Shape())
+        # A plane that only touches the face must not part a sliver off it by being turned.
+        least = tolerance.AREA if turn.any() else 0.0
+        if len(pieces) > 1 and min(_measured(p)[0] for p in pieces) > least:
+            return pieces
+    return [face]
 
 
 def _plane(face: Shape, position: Floats, normal: Floats) -> Shape:

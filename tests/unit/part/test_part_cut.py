@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from shaped_parts import bowl, cylinder, face_towards, plate, sphere
@@ -198,6 +198,9 @@ def test_a_plane_without_a_normal_and_a_way_of_one_place_are_refused():
 
 @settings(deadline=None, max_examples=12)
 @given(st.floats(0.5, 19.5), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+@example(4.0, -1.0, 5.960464477539063e-08)
+@example(4.0, -1.0, -1e-7)
+@example(12.0, 0.5, 1e-7)
 def test_wherever_a_plane_cuts_the_pieces_are_the_whole(height, nx, ny):
     part = cylinder(5.0, 20.0)
     cut = divided(part, plane_cut(1, (0.0, 0.0, height), (nx, ny, 1.5)))
