@@ -30,6 +30,7 @@ LOW, HIGH = np.zeros(3), np.array([60.0, 60.0, 20.0])
 BLANK = Box(frame=WORLD, low=LOW, high=HIGH, material="aluminium", density=2.7)
 STEP, DEEP, KEPT = 1.5, 9.0, 0.3
 CUTTER = mill(8.0, 1.0)
+CHOICES = {ALLOWANCE: KEPT, BOTTOM: 2.0 + KEPT, CELL: 0.5, LAYER: STEP}
 
 
 def hill(x, y):
@@ -37,9 +38,9 @@ def hill(x, y):
     return 2.0 + np.clip(15.0 - 0.7 * np.hypot(x - 30.0, y - 30.0), 0.0, 12.0)
 
 
-def milled(depth: float) -> tuple[float, Milled]:
-    """Return the length of the feed moves and the stock that roughing the hill with a depth of cut leaves."""
-    space = SurfaceSpace(
+def space_of_hill() -> SurfaceSpace:
+    """Return the hill in its blank, seen from above."""
+    return SurfaceSpace(
         part=None,
         blank=BLANK,
         setup=SETUP,
@@ -48,11 +49,14 @@ def milled(depth: float) -> tuple[float, Milled]:
         low=LOW,
         high=HIGH,
     )
-    choices = {ALLOWANCE: KEPT, BOTTOM: 2.0 + KEPT, CELL: 0.5, LAYER: STEP}
-    made = operation("rough", "group-01", CUTTER, choices)
+
+
+def milled(depth: float) -> tuple[float, Milled]:
+    """Return the length of the feed moves and the stock that roughing the hill with a depth of cut leaves."""
+    made = operation("rough", "group-01", CUTTER, CHOICES)
     data = cutting(depth, 3.0)
     stock = PlanningStock.of(BLANK, SETUP)
-    drive = plane_drive_of(replace(made, data=data), space, stock, NO_PROGRESS)
+    drive = plane_drive_of(replace(made, data=data), space_of_hill(), stock, NO_PROGRESS)
     path = rough(drive, CUTTER, data, stock, SETUP, RoughSettings(), NO_PROGRESS).path
     feed = float(path.lengths()[path.motion != Motion.RAPID].sum())
     return feed, Milled((0.0, 0.0), (60.0, 60.0), 20.0).cut(path, CUTTER)
@@ -111,21 +115,11 @@ def test_stock_beside_a_wall_is_cut_where_it_is_wider_than_a_rim():
 
 def test_a_plate_under_what_was_roughed_from_above_is_cut_from_the_side_layer_by_layer():
     """Seen from the side, a plate that another direction left stands all the way down: no layer may go by it."""
-    space = SurfaceSpace(
-        part=None,
-        blank=BLANK,
-        setup=SETUP,
-        direction=(0.0, 0.0, 1.0),
-        skin=grid(hill, high=(60.0, 60.0)),
-        low=LOW,
-        high=HIGH,
-    )
-    choices = {ALLOWANCE: KEPT, BOTTOM: 2.0 + KEPT, CELL: 0.5, LAYER: STEP}
-    made = replace(operation("rough", "group-01", CUTTER, choices), data=cutting(DEEP, 3.0))
+    made = replace(operation("rough", "group-01", CUTTER, CHOICES), data=cutting(DEEP, 3.0))
     uncut = PlanningStock.of(BLANK, SETUP)
     heights = np.full_like(uncut.heights, 0.0)
     heights[:3] = uncut.heights[:3]
-    drive = plane_drive_of(made, space, replace(uncut, heights=heights), NO_PROGRESS)
+    drive = plane_drive_of(made, space_of_hill(), replace(uncut, heights=heights), NO_PROGRESS)
     plate = Region.rectangle(0.0, 0.0, 1.5, 60.0)
     groups = {level.top for level in drive.levels}
     for top in groups:
