@@ -21,7 +21,9 @@ from trunnion.post.settings import PostSettings
 from trunnion.shop import load_shop
 from trunnion.shop.kinematics import (
     NO_WORK_POSITIONS,
+    POLE,
     axes_of,
+    pole_of,
     poses_of,
     rotary_solutions,
     words_of,
@@ -123,6 +125,27 @@ def test_a_direction_leads_to_angles_that_hold_it(name, machine):
     assert held.all()
     for way in (0, 1):
         assert axes_of(place, stands[:, way]) == pytest.approx(axes, abs=1e-6)
+
+
+@by_name
+def test_at_the_pole_a_free_axis_may_stand_anywhere(name, machine):
+    if not machine.rotary:
+        return
+    place, random = standing(machine), np.random.default_rng(4)
+    around = random.uniform(-np.pi, np.pi, 200)
+    lean = np.where(np.arange(200) % 2, 0.99, 0.01) * POLE
+    across = np.linalg.svd(pole_of(machine)[None])[2][1:]
+    axes = np.sqrt(1.0 - lean**2)[:, None] * pole_of(machine) + lean[:, None] * (
+        np.column_stack([np.cos(around), np.sin(around)]) @ across
+    )
+    stands, free, held = rotary_solutions(machine, axes)
+    assert free.any(axis=2)[held].all()
+    for way in (0, 1):
+        anyhow = np.where(
+            free[:, way], random.uniform(-np.pi, np.pi, free[:, way].shape), stands[:, way]
+        )
+        off = np.linalg.norm(axes_of(place, anyhow) - axes, axis=1)
+        assert off[held].max(initial=0.0) <= 1.01 * POLE
 
 
 @by_name

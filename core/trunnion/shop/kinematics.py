@@ -163,7 +163,11 @@ def _turned(turn: Floats, vectors: Floats) -> Floats:
 
 
 def _both(one: Axis, two: Axis, v: Floats, w: Floats, sign: float) -> tuple[Floats, Bools, Bools]:
-    """Return both ways to solve R1 R2 v = w for unit v, w (k, 3); `sign` of the first angle."""
+    """Return both ways to solve R1 R2 v = w for unit v, w (k, 3); `sign` of the first angle.
+
+    Where one angle is free the other is that of the pole itself: with its own small lean the tool would lean to whatever side the free
+    one happens to stand at, away from where it should by up to twice as much.
+    """
     u1, u2 = np.array(one.direction), np.array(two.direction)
     along, both = w @ u1, float(u1 @ u2)
     p, q, s = w @ u2 - along * both, np.cross(u1, w) @ u2, v @ u2 - along * both
@@ -174,8 +178,11 @@ def _both(one: Axis, two: Axis, v: Floats, w: Floats, sign: float) -> tuple[Floa
     half_angle = np.where(
         is_free, 0.0, np.arctan2(np.sqrt(np.maximum((1.0 - ratio) * (1.0 + ratio), 0.0)), ratio)
     )
+    second_free = np.linalg.norm(v - np.outer(v @ u2, u2), axis=1) < POLE
+    half_angle = np.where(second_free, np.where(half_angle < 0.5 * np.pi, 0.0, np.pi), half_angle)
     middle = np.where(is_free, 0.0, np.arctan2(-q, p))
     held = np.where(is_free, np.abs(s) < POLE, np.abs(ratio) < 1.0 + POLE)
+    w = np.where(is_free[:, None], np.where(along < 0.0, -1.0, 1.0)[:, None] * u1, w)
     angle, free = np.zeros((len(v), 2, 2)), np.zeros((len(v), 2, 2), bool)
     for solution, side in enumerate((1.0, -1.0)):
         first = middle + side * half_angle
