@@ -42,6 +42,15 @@ def test_the_hubs_ball_is_as_round_as_the_fillets_and_the_fillets_ball_smaller()
     assert in_fillet(TOOLS, sizes()).corner_radius == 1.0
 
 
+def test_where_no_flutes_are_long_enough_a_slim_shank_goes_down_into_the_fillets():
+    tool = in_fillet(TOOLS, sizes(channel=10.7, fillet=3.0, height=31.2))
+    assert tool.corner_radius == 2.5
+    assert tool.flute_length < 31.2 < tool.stickout
+    thick = in_fillet(TOOLS, sizes(channel=6.0, fillet=3.0, height=31.2))
+    assert thick is None
+    assert in_fillet(TOOLS, sizes(channel=10.7, fillet=3.0, height=60.0)) is None
+
+
 def test_the_ball_on_walls_comes_down_to_the_rims_of_the_fillets():
     assert through_channel(TOOLS, sizes(channel=6.7), 0.3).diameter == 6.0
     assert on_walls(TOOLS, sizes(channel=6.7), 0.3).diameter == 3.0

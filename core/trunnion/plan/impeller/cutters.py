@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -27,6 +28,8 @@ SHORT, SHARPEST = 0.05, 0.98
 """mm: shorter sides of triangles say nothing of a bend; and the share of bends that are no sharper than the fillet's."""
 WORTHWHILE = 0.75
 """Of the time to rough with one cutter: a second one that does not get below it is not worth its change and its entries."""
+SLIM = 0.3
+"""mm by which a shank may be thicker than the flutes end: less than any allowance that roughing leaves on both sides."""
 NEAREST = 12
 """Places on the other wall that are looked at for one that faces."""
 
@@ -145,12 +148,15 @@ def on_walls(tools: Sequence[Tool], sizes: WheelSizes, allowance: float) -> Tool
 
 
 def in_fillet(tools: Sequence[Tool], sizes: WheelSizes) -> Tool | None:
-    """Return the largest tapered ball that goes into the root fillets with room to turn in them, and through the narrowest channel."""
-    return _largest(
-        tools,
-        min(2.0 * SMALLER * sizes.fillet if sizes.fillet > 0.0 else np.inf, sizes.channel),
-        sizes.height + OVER,
-    )
+    """Return the largest tapered ball that goes into the root fillets with room to turn in them, and through the narrowest channel.
+
+    Nothing but its ball cuts there: where no flutes are as long as the blades are high, a shank no thicker than they are goes down with
+    them.
+    """
+    widest = min(2.0 * SMALLER * sizes.fillet if sizes.fillet > 0.0 else np.inf, sizes.channel)
+    deep = sizes.height + OVER
+    slim = [t for t in tools if t.shank_diameter <= min(_flute_end(t) + SLIM, sizes.channel)]
+    return _largest(tools, widest, deep) or _largest(slim, widest, deep, by_shank=True)
 
 
 def on_hub(tools: Sequence[Tool], sizes: WheelSizes) -> Tool | None:
@@ -162,11 +168,20 @@ def on_hub(tools: Sequence[Tool], sizes: WheelSizes) -> Tool | None:
     )
 
 
-def _largest(tools: Sequence[Tool], widest: float, deep: float) -> Tool | None:
-    fits = [t for t in tools if t.diameter <= widest and _is_deep_ball(t, deep)]
+def _largest(
+    tools: Sequence[Tool], widest: float, deep: float, *, by_shank: bool = False
+) -> Tool | None:
+    fits = [t for t in tools if t.diameter <= widest and _is_deep_ball(t, deep, by_shank=by_shank)]
     return max(fits, key=lambda t: (t.diameter, -t.stickout, t.name), default=None)
 
 
-def _is_deep_ball(tool: Tool, deep: float) -> bool:
-    """Return whether a cutter is a tapered ball with flutes of so many mm at least."""
-    return tool.form == "taper" and tool.corner_radius == tool.radius and tool.flute_length >= deep
+def _is_deep_ball(tool: Tool, deep: float, *, by_shank: bool = False) -> bool:
+    """Return whether a cutter is a tapered ball with flutes of so many mm at least; `by_shank` what stands out of the holder counts."""
+    length = tool.stickout if by_shank else tool.flute_length
+    return tool.form == "taper" and tool.corner_radius == tool.radius and length >= deep
+
+
+def _flute_end(tool: Tool) -> float:
+    """Return how thick in mm a tapered ball is where its flutes end."""
+    rise = math.tan(math.radians(tool.taper_angle))
+    return 2.0 * (tool.radius + rise * (tool.flute_length - tool.corner_radius))
