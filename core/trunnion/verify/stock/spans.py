@@ -1,4 +1,9 @@
-"""Moves cut into spans so short that within each every point runs straight past the tool, up to `tolerance.STOCK_CHORD`."""
+"""Moves cut into spans so short that within each every point runs straight past the tool, up to `tolerance.STOCK_CHORD`.
+
+Seen from a tool that turns by theta about w while its tip goes by d, the way of a point at p bends by theta^2 p - 2 theta w x d
+over a span. The second term is the same for all points, the first is never below 0 along the axis: a straight way through the middle
+of what they make of it is twice as near as one through its ends, so spans of turning tools begin and end beside the tip's own path.
+"""
 
 from __future__ import annotations
 
@@ -46,10 +51,12 @@ def spans_each(moves: Moves, whole: Bools) -> Ints:
     size = _sizes(moves)[moves.tool]
     theta = _turns(moves, EVERY)
     run = np.linalg.norm(moves.end - moves.start, axis=1)
-    # A point's way past a turning tool bends by the turn squared at arm's length, and by turn and way together.
+    # A point's way past a turning tool bends by the turn squared at arm's length, and by turn and way together; what is cut in
+    # spans beside the path (`_Poses.beside`) strays by half as much as the chords of such a bend.
+    is_arc = moves.sweep != 0.0
+    arm = np.where(is_arc, np.hypot(size[:, 0], size[:, 2]), np.hypot(0.5 * size[:, 0], size[:, 2]))
     turning = np.sqrt(
-        (theta**2 * np.hypot(size[:, 0], size[:, 2]) + 2.0 * theta * run)
-        / (8.0 * tolerance.STOCK_CHORD)
+        (theta**2 * arm + np.where(is_arc, 2.0, 1.0) * theta * run) / (8.0 * tolerance.STOCK_CHORD)
     )
     away = moves.start - np.where(np.isnan(moves.centre), moves.start, moves.centre)
     away -= (away * moves.start_axis).sum(axis=1, keepdims=True) * moves.start_axis
@@ -66,15 +73,18 @@ def spans_of(moves: Moves, rows: Ints, each: Ints, whole: Bools) -> Spans:
     move = np.repeat(rows, each)
     step, steps = np.arange(start[-1]) - np.repeat(start[:-1], each), np.repeat(each, each)
     row = np.empty((len(move), VECTORS, 3))
-    poses = _Poses(moves, move)
+    poses, size = _Poses(moves, move), _sizes(moves)[moves.tool[move]]
     for k, share in enumerate((step / steps, (step + 1) / steps)):
-        row[:, 4 * k], row[:, 4 * k + 1 : 4 * k + 4] = poses.at(share)
+        tip, frame = poses.at(share)
+        row[:, 4 * k], row[:, 4 * k + 1 : 4 * k + 4] = (
+            tip + poses.beside(steps, frame[:, 2], size[:, 0]),
+            frame,
+        )
     row[:, 12], row[:, 13] = np.minimum(row[:, 0], row[:, 4]), np.maximum(row[:, 0], row[:, 4])
     bent = np.repeat(whole, each)
     row[:, 14:] = 0.0
     row[bent, 14:] = poses.arcs()[bent]
     row[bent, 12:14] = poses.path_boxes(bent)
-    size = _sizes(moves)[moves.tool[move]]
     row[:, 8:10] = _boxes(row, size[:, 0], size[:, 2])
     row[:, 10:12] = _boxes(row, size[:, 1], size[:, 3])
     return Spans(row.reshape(-1, SPAN_COLUMNS), start)
@@ -119,6 +129,16 @@ class _Poses:
         axis = self.axis * np.cos(turn) + self.ahead * np.sin(turn)
         ahead = self.ahead * np.cos(turn) - self.axis * np.sin(turn)
         return tip, np.stack([ahead, self.across, axis], axis=1)
+
+    def beside(self, steps: Ints, axis: Floats, height: Floats) -> Floats:
+        """Return by how much (s, 3) tips are set beside their straight path where each way is one of so many `steps` (s,) with the tool
+        along `axis` (s, 3): by half of what ways past the tip bend, and past the middle of what cuts, `height` (s,) mm."""
+        theta = np.where(self.arc[:, 0], 0.0, self.theta / steps)[:, None]
+        way = self.displacement / steps[:, None]
+        return np.asarray(
+            theta * np.cross(self.across, way) / 8.0
+            - theta * theta * (height / 16.0)[:, None] * axis
+        )
 
     def arcs(self) -> Floats:
         """Return centre, direction of the middle, radius and cosine of half the angle of arcs (s, 4, 3), the last two three times."""
