@@ -12,12 +12,13 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 
 EDGE = 1e-6
 """mm that the balls about groups count as wider by, for rounding."""
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def bodies_hold(
     points: Floats,
     start: Ints,
@@ -50,7 +51,7 @@ def bodies_hold(
                     held[k] = _holds(points, start[s], start[s + 1], tip, axis, rows)
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _misses(
     ball: Floats, tip: Floats, axis: Floats, low: float, high: float, widest: float
 ) -> bool:
@@ -63,7 +64,7 @@ def _misses(
     return x * x + y * y + z * z - along * along > far * far
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _is_in(x: float, y: float, z: float, axis: Floats, rows: Floats) -> bool:
     """Return whether a position from the tip lies in a body."""
     along = x * axis[0] + y * axis[1] + z * axis[2]
@@ -80,7 +81,7 @@ def _is_in(x: float, y: float, z: float, axis: Floats, rows: Floats) -> bool:
     return False
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _holds(points: Floats, first: int, last: int, tip: Floats, axis: Floats, rows: Floats) -> bool:
     """Return whether a body holds any of the points from `first` to `last`."""
     for m in range(first, last):

@@ -11,6 +11,7 @@ import numpy as np
 from numba import int64, njit, types
 
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 
 # Any layout, read-only or not: without it every mixture of them that comes along is compiled anew, for a second each.
 _PAIRS = types.Array(types.float64, 2, "A", readonly=True)
@@ -29,7 +30,7 @@ BLOCK = 16
 """Segments in a row that have a box together."""
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _length(x: float, y: float) -> float:
     """Return the length of a plane vector."""
     # Three times as fast as hypot, and these numbers neither overflow nor vanish.
@@ -173,7 +174,7 @@ def _in_strips(
     return rows, begin
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _strip(y: float, bottom: float, width: float, count: int) -> int:
     """Return the strip that a height is in; monotone in y, so that a point is in one of its segment's strips whatever is rounded."""
     return min(max(int((y - bottom) / width), 0), count - 1)

@@ -31,13 +31,14 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 
 CR, CZ, R, A0R, A0Z, A1R, A1Z = range(7)
 ARC_COLUMNS = 7
 FIRST, LAST, Z_LOW, Z_HIGH, R_MAX, KIND, CLOSED_FIRST, CLOSED_LAST = range(8)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def depth_in_body(
     arcs: Floats, first: int, last: int, rho: float, h: float
 ) -> tuple[float, float, float]:
@@ -75,7 +76,7 @@ def depth_in_body(
     return best, nr, nz
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def swept_depth(
     arcs: Floats, piece: Floats, rho: float, h: float, rise: float
 ) -> tuple[float, float, float]:
@@ -120,7 +121,7 @@ def swept_depth(
     return best, (-nr if rho > 0.0 else 0.0), (0.0 if still else -nz)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def support(arcs: Floats, first: int, last: int, nr: float, nz: float) -> float:
     """Return the support s(n) (mm) of a closed body: how far it extends from the tip in the direction
     n = (nr across the axis, nz along it), nr >= 0, unit.
@@ -141,7 +142,7 @@ def support(arcs: Floats, first: int, last: int, nr: float, nz: float) -> float:
     return most
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def radius_at(arcs: Floats, first: int, last: int, h: float) -> float:
     """Return the radius (mm) of a body at height h (mm), h within its ends; negative where it has
     none.
@@ -168,7 +169,7 @@ def radius_at(arcs: Floats, first: int, last: int, h: float) -> float:
     return least
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def heights_at(
     arcs: Floats, first: int, last: int, z_low: float, z_high: float, rho: float
 ) -> tuple[float, float]:

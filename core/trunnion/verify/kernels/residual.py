@@ -26,6 +26,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 from trunnion.verify.kernels.body import depth_in_body
 from trunnion.verify.kernels.contact.strips import Z_END, Z_START, move_box, point_distance
 
@@ -86,7 +87,7 @@ class SpanTree(NamedTuple):
     root: Ints
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def bull_signed_distance(radius: float, corner: float, top: float, rho: float, h: float) -> float:
     """Return the signed distance (mm) of a point (rho, h) to a plain cutter whose flutes end at `top`
     (mm, at least its corner radius); negative inside.
@@ -103,7 +104,7 @@ def bull_signed_distance(radius: float, corner: float, top: float, rho: float, h
     return max(out + min(max(qx, qy), 0.0) - corner, over)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def move_signed_distance(
     x: float,
     y: float,
@@ -134,7 +135,7 @@ def move_signed_distance(
     return min(best, bull_signed_distance(radius, corner, top, rho, h))
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def point_in_tool_frame(
     w: Floats, x: float, y: float, z: float, t: float
 ) -> tuple[float, float, float]:
@@ -167,7 +168,7 @@ def point_in_tool_frame(
     return e, n, a
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def flute_signed_distance(flutes: Flutes, tool: int, rho: float, h: float, endless: bool) -> float:
     """Return the signed distance (mm) of a point (rho, h) to the union of a tool's cutting bodies,
     negative inside.
@@ -184,7 +185,7 @@ def flute_signed_distance(flutes: Flutes, tool: int, rho: float, h: float, endle
     return best
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _distance_slope(
     arcs: Floats,
     first: int,
@@ -203,7 +204,7 @@ def _distance_slope(
     return -depth, nz * dz + (nr * (x * dx + y * dy) / rho if rho > 0.0 else 0.0)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def chord_distance_bound(
     arcs: Floats,
     first: int,
@@ -253,7 +254,7 @@ def chord_distance_bound(
     return lower, (a if fa <= fb else b), a, b
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _level_rho(
     w: Floats, x: float, y: float, z: float, t0: float, t1: float
 ) -> tuple[float, float, float]:
@@ -288,7 +289,7 @@ def _level_rho(
     return math.sqrt(px * px + py * py), h, t0 + t * (t1 - t0)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _chord_sag(w: Floats, span: float, far: float) -> float:
     """Return how far (mm) a point at most `far` from the tip leaves its chord, seen from the tool,
     over a share of the path.
@@ -308,7 +309,7 @@ def _chord_sag(w: Floats, span: float, far: float) -> float:
     return 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def span_signed_distance(
     w: Floats,
     flutes: Flutes,
@@ -381,7 +382,7 @@ def span_signed_distance(
     return best, at
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def node_distance_bound(
     tree: SpanTree, flutes: Flutes, n: int, x: float, y: float, z: float, above: bool
 ) -> float:
@@ -402,7 +403,7 @@ def node_distance_bound(
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def nearest_span(
     x: float,
     y: float,
@@ -694,7 +695,7 @@ def residual_bvh_loop(
         )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _removed_from_above(
     x: float,
     y: float,
@@ -790,7 +791,7 @@ def removed_loop(
             )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def surroundings_removed_loop(
     first: int,
     last: int,

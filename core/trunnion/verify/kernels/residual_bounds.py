@@ -23,6 +23,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 from trunnion.verify.kernels.body import depth_in_body
 from trunnion.verify.kernels.residual import (
     AX,
@@ -53,7 +54,7 @@ CLOSE = 0.05
 """Share of the bound that single distances may be off."""
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _direction_in_tool_frame(
     w: Floats, x: float, y: float, z: float, t: float
 ) -> tuple[float, float, float]:
@@ -74,7 +75,7 @@ def _direction_in_tool_frame(
     return e, n, a
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _distance_and_gradient(
     arcs: Floats, first: int, last: int, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:
@@ -84,7 +85,7 @@ def _distance_and_gradient(
     return (-depth, nr * x / rho, nr * y / rho, nz) if rho > 0.0 else (-depth, 0.0, 0.0, nz)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _cell_chord_bound(
     arcs: Floats,
     first: int,
@@ -127,7 +128,7 @@ def _cell_chord_bound(
     return f - abs(gx * ax + gy * ay + gz * az) - abs(gx * bx + gy * by + gz * bz)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _cell_span_bound(
     w: Floats,
     flutes: Flutes,
@@ -215,7 +216,7 @@ def _cell_span_bound(
     return least
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def cell_residual_bound(
     x: float,
     y: float,
@@ -325,7 +326,7 @@ def _mean_of_two(p: Floats, q: Floats) -> float:
     return best
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _nearest_body(flutes: Flutes, tool: int, w: Floats, position: Floats, share: float) -> int:
     """Return which of a tool's convex bodies a position lies deepest in, or is nearest to, in a pose.
 

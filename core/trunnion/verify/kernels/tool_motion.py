@@ -18,6 +18,7 @@ import math
 from numba import njit
 
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 
 # A way: how the tool goes along one move.
 START, VECTOR, AXIS, PIVOT, ANGLE, CENTRE, ACROSS, ALONG = 0, 3, 6, 9, 12, 13, 16, 19
@@ -92,7 +93,7 @@ def fill_tool_motion(
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _fill_arc_motion(
     start: Floats, end: Floats, axis: Floats, centre: Floats, sweep: float, motion: Floats
 ) -> None:
@@ -128,7 +129,7 @@ def _fill_arc_motion(
     motion[LENGTH] = math.hypot(max(radius, motion[R_END]) * abs(sweep), climb)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def tip_at(motion: Floats, t: float) -> tuple[float, float, float]:
     """Return the tip (mm) at a share t of the block."""
     if motion[SWEEP] == 0.0:
@@ -150,7 +151,7 @@ def tip_at(motion: Floats, t: float) -> tuple[float, float, float]:
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def axis_at(motion: Floats, t: float) -> tuple[float, float, float]:
     """Return the unit tool axis at a share t of the block."""
     ax, ay, az = motion[AXIS], motion[AXIS + 1], motion[AXIS + 2]
@@ -167,7 +168,7 @@ def axis_at(motion: Floats, t: float) -> tuple[float, float, float]:
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def fill_swept_segment(motion: Floats, t0: float, t1: float, ends: Floats, span: Floats) -> None:
     """Fill ends (2, 12) and span (8,) for the part of a block between two shares.
 
@@ -218,7 +219,7 @@ def fill_swept_segment(motion: Floats, t0: float, t1: float, ends: Floats, span:
         )
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def point_in_tool_frame(
     ends: Floats, e: int, px: float, py: float, pz: float
 ) -> tuple[float, float, float]:
@@ -232,7 +233,7 @@ def point_in_tool_frame(
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def segment_count(motion: Floats, radius: float) -> int:
     """Return into how many equal spans a block is cut for a body of a radius (mm).
 
@@ -248,7 +249,7 @@ def segment_count(motion: Floats, radius: float) -> int:
     return max(1, int(math.ceil(most)))
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def chord_sag(span: Floats, far: float) -> float:
     """Return how far (mm) a point that stays within `far` of the tip can leave the chord between its
     positions at both ends of a span, in the frame of the middle.

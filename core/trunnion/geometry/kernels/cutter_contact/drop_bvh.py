@@ -12,13 +12,14 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 
 X0, Y0, X1, Y1, Z1 = range(5)
 """A node's box, which has no lower end: only what is above can lift a cutter."""
 BOX_COLUMNS = 5
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def bvh_sort_loop(centres: Floats, start: Ints, order: Ints) -> None:
     """Sort order (t,) in place so that each node's run of the centres (t, 3) is halved across its
     longest side; start (leaves + 1,) the runs of the leaves."""
@@ -39,7 +40,7 @@ def bvh_sort_loop(centres: Floats, start: Ints, order: Ints) -> None:
         width //= 2
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _partition(centres: Floats, axis: int, order: Ints, first: int, last: int, middle: int) -> None:
     """Order order[first:last + 1] along an axis so far that the one at `middle` has no larger ones
     before and no smaller ones after it (quickselect: Hoare, 1961)."""
@@ -65,7 +66,7 @@ def _partition(centres: Floats, axis: int, order: Ints, first: int, last: int, m
             return
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def bvh_bounds_loop(corners: Floats, start: Ints, boxes: Floats, planes: Floats) -> None:
     """Fill boxes (nodes, 5) of the facets' corners (t, 9), and the planes' (nodes, 3) last column: the
     height over (0, 0) of the lowest plane with the slopes of the first two that nothing of the node

@@ -24,6 +24,7 @@ from numba import njit
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.kernels.cutter_contact.drop_bvh import X0, X1, Y0, Y1, Z1
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import RHO0, RHO1, ROUND, A, B, C
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 
 (
     AX,
@@ -62,7 +63,7 @@ STEPS = 60
 _TINY, _ROUNDING, _SLACK = 1e-300, 1e-13, 1e-10
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _profile_height(pieces: Floats, rho: float) -> float:
     """Return g (mm), the height above the tip at which the cutter begins at the distance rho; rho
     within its radius."""
@@ -75,7 +76,7 @@ def _profile_height(pieces: Floats, rho: float) -> float:
     return pieces[k, A] + pieces[k, B] * (rho - pieces[k, RHO0])
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _profile_slope(pieces: Floats, rho: float) -> float:
     """Return g'(rho), towards the axis where the lower side has a bend."""
     k = 0
@@ -87,7 +88,7 @@ def _profile_slope(pieces: Floats, rho: float) -> float:
     return out / math.sqrt(max(pieces[k, C] * pieces[k, C] - out * out, _TINY))
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _contact_radius(pieces: Floats, steep: float) -> float:
     """Return the largest distance rho (mm) from the axis at which the lower side is not steeper than a
     plane of slope `steep`: where it touches.
@@ -108,7 +109,7 @@ def _contact_radius(pieces: Floats, steep: float) -> float:
     return rho
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _edge_contact_offset(pieces: Floats, lateral: float, rise: float, reach: float) -> float:
     """Return how far (u, mm) from the foot of the axis, 0 to `reach`, an edge that climbs by `rise` >=
     0 touches, at a distance beside the axis.
@@ -137,7 +138,7 @@ def _edge_contact_offset(pieces: Floats, lateral: float, rise: float, reach: flo
     return reach
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _piece_contact_offset(
     piece: Floats, lateral: float, rise: float, low: float, high: float
 ) -> float:
@@ -182,7 +183,7 @@ def _piece_contact_offset(
     return u
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _edge_drop(
     px: float,
     py: float,
@@ -246,7 +247,7 @@ def _edge_drop(
     return max(best, az + rise * (foot + u) - _profile_height(pieces, rho))
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _edge_drop_ball(
     px: float,
     py: float,
@@ -285,7 +286,7 @@ def _edge_drop_ball(
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _vertex_drop(
     px: float, py: float, x: float, y: float, z: float, pieces: Floats, radius: float, best: float
 ) -> float:
@@ -296,7 +297,7 @@ def _vertex_drop(
     return max(best, z - _profile_height(pieces, math.sqrt(square)))
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _facet_drop(px: float, py: float, f: Floats, pieces: Floats, best: float) -> float:
     """Return the larger of `best` and the height (mm) to which the inside of a facet (19,) lifts the
     tip; vertical facets have no inside in plan.
@@ -324,7 +325,7 @@ def _facet_drop(px: float, py: float, f: Floats, pieces: Floats, best: float) ->
     return z
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _plane_lift(plane: Floats, pieces: Floats, lift: Floats) -> None:
     """Fill lift (8,), as `LIFT_X` to `SECANT` name it, with how a plane (3,), slopes along x and y and
     height over (0, 0), lifts a cutter.
@@ -341,14 +342,14 @@ def _plane_lift(plane: Floats, pieces: Floats, lift: Floats) -> None:
     lift[LIFT] = height + rho * steep - _profile_height(pieces, rho)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def plane_lift_loop(planes: Floats, pieces: Floats, lifts: Floats) -> None:
     """Fill lifts (n, 8) with how planes (n, 3) lift a cutter, row by row as `_plane_lift` does."""
     for n in range(len(planes)):
         _plane_lift(planes[n], pieces, lifts[n])
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _height_bound(
     px: float,
     py: float,
@@ -380,7 +381,7 @@ def _height_bound(
     return top
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _ball_clearance(square: float, lift: Floats, ball: float) -> float:
     """Return how far (mm) at least a ball that touches a plane stands above positions of the plane at a
     squared distance `square` (mm2) from where it touches, measured along z.
@@ -393,7 +394,7 @@ def _ball_clearance(square: float, lift: Floats, ball: float) -> float:
     return square * away * lift[SECANT] / ((away + ball) * (ball + math.sqrt(square) * lift[SLOPE]))
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _tangent_height_bound(
     px: float,
     py: float,
@@ -427,7 +428,7 @@ def _tangent_height_bound(
     return middle + 0.5 * (gx * (x1 - x0) + gy * (y1 - y0))
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _triangle_drop(
     px: float,
     py: float,
@@ -502,7 +503,7 @@ def _triangle_drop(
     return best
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _edge_contact_share(
     px: float, py: float, f: Floats, k: int, pieces: Floats, radius: float
 ) -> float:
@@ -528,7 +529,7 @@ def _edge_contact_share(
     return min(max(foot + u, 0.0), length) / length
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _contact_point(
     px: float, py: float, f: Floats, pieces: Floats, radius: float, at: Floats
 ) -> None:
@@ -559,7 +560,7 @@ def _contact_point(
             at[0], at[1], at[2] = x, y, z
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _node_bound(
     px: float,
     py: float,

@@ -25,12 +25,13 @@ from trunnion.geometry.kernels.cutter_contact.drop_cutter_compiled import (
     _plane_lift,
     _triangle_drop,
 )
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 
 MOST_BLOCKING = 2000
 """Triangles that block a tip one after the other, at most; then it counts as not free within its distance."""
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _blocking_row(
     px: float,
     py: float,
@@ -85,7 +86,7 @@ def _blocking_row(
     return -1
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _blocked_end(
     px: float,
     py: float,

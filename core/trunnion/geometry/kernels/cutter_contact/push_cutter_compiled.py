@@ -23,6 +23,7 @@ from trunnion.geometry.kernels.cutter_contact.drop_cutter_compiled import (
     _contact_radius,
     _profile_height,
 )
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 STEPS = 80
@@ -30,7 +31,7 @@ STEPS = 80
 HALVINGS = 60
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _profile_radius(pieces: Floats, height: float) -> float:
     """Return the radius (mm) to which the cutter extends at a height above its tip, -1 below it; where
     it is level, its outer radius."""
@@ -64,14 +65,14 @@ def _profile_radius(pieces: Floats, height: float) -> float:
     return radius
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _disc_margin(pieces: Floats, across: float, height: float) -> float:
     """Return by how much (mm) the cutter's disc extends over a point beside the line; negative where
     it doesn't. Concave along an edge."""
     return _profile_radius(pieces, height) - abs(across)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _vertex_push(pieces: Floats, x: float, across: float, height: float) -> float:
     """Return how far (x, mm) a point blocks the line towards +x; -inf where the cutter passes beside
     or above it."""
@@ -80,7 +81,7 @@ def _vertex_push(pieces: Floats, x: float, across: float, height: float) -> floa
     return x + math.sqrt(square) if r >= 0.0 and square >= 0.0 else -np.inf
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _edge_push(
     pieces: Floats, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float, best: float
 ) -> float:
@@ -148,7 +149,7 @@ def _edge_push(
     return best
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _edge_margin_end(
     pieces: Floats, y0: float, z0: float, dy: float, dz: float, inside: float, end: float
 ) -> float:
@@ -165,7 +166,7 @@ def _edge_margin_end(
     return inside
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _facet_push(pieces: Floats, c: Floats, y: float, z: float, mirror: float, best: float) -> float:
     """Return the larger of `best` and how far the inside of a triangle, corners c (9,), blocks a line
     towards +x of the mirrored space.
@@ -209,7 +210,7 @@ def _facet_push(pieces: Floats, c: Floats, y: float, z: float, mirror: float, be
     return x
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def triangle_push(pieces: Floats, c: Floats, y: float, z: float, mirror: float) -> float:
     """Return how far (x, mm) a triangle, corners c (9,), blocks the line at (y, z) towards +x (mirror
     1) or -x (mirror -1, negated); -inf where it doesn't.

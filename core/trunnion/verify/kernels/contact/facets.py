@@ -32,6 +32,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 from trunnion.verify.kernels.body import (
     A0R,
     A0Z,
@@ -75,7 +76,7 @@ DEEP = 1.0
 """mm: depths beyond this need not be known."""
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _depth_and_normal(
     arcs: Floats,
     first: int,
@@ -100,7 +101,7 @@ def _depth_and_normal(
     return depth, share * ex + nh * ax, share * ey + nh * ay, share * ez + nh * az
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def swept_depth_at(
     motion: Floats, t: float, arcs: Floats, first: int, last: int, px: float, py: float, pz: float
 ) -> float:
@@ -111,7 +112,7 @@ def swept_depth_at(
     return _depth_and_normal(arcs, first, last, ax, ay, az, px - cx, py - cy, pz - cz)[0]
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _curvature_centre(
     arcs: Floats,
     first: int,
@@ -158,7 +159,7 @@ def _curvature_centre(
     return share * ex + ch * ax, share * ey + ch * ay, share * ez + ch * az
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _minimax_combination(one: Floats, other: Floats) -> float:
     """Return the least over m in [0, 1] of the greatest over six points of (1 - m) one + m other (each
     (6,), mm).
@@ -194,14 +195,14 @@ def _minimax_combination(one: Floats, other: Floats) -> float:
     return value
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _safe_ratio(part: float, whole: float) -> float:
     """Return part / whole, 0 where the whole is not positive: triangles without area or with an edge
     of no length."""
     return part / whole if whole > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _closest_point_on_triangle(p: Floats, x: float, y: float, z: float) -> tuple[float, float]:
     """Return the position (v, w) of the point a + v (b - a) + w (c - a) of a triangle (3, 3) that is
     nearest to a point.
@@ -242,7 +243,7 @@ def _closest_point_on_triangle(p: Floats, x: float, y: float, z: float) -> tuple
     return (vb / total, vc / total) if total != 0.0 else (0.0, 0.0)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _raise_attained(
     motion: Floats,
     t: float,
@@ -261,7 +262,7 @@ def _raise_attained(
         found[0], found[1], found[2], found[3] = depth, px, py, pz
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _task_bound(
     task: Floats,
     normal: Floats,
@@ -347,7 +348,7 @@ def _task_bound(
     return upper + drift
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _corners_in_tool_frame(task: Floats, ends: Floats, span: Floats, six: Floats) -> float:
     """Fill six (6, 3) with a task's corners as the tool sees them at both ends of the span, and return
     the sag (mm): how far the triangle may leave their hull in between.
@@ -364,7 +365,7 @@ def _corners_in_tool_frame(task: Floats, ends: Floats, span: Floats, six: Floats
     return chord_sag(span, math.sqrt(far))
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _half_space_bound(
     arcs: Floats,
     first: int,
@@ -392,7 +393,7 @@ def _half_space_bound(
     return most
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _closest_point_and_share(
     six: Floats, cx: float, cy: float, cz: float, flat: Floats
 ) -> tuple[float, float, float]:
@@ -421,7 +422,7 @@ def _closest_point_and_share(
     return v, w, s
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _tangent_plane_bound(
     arcs: Floats,
     first: int,
@@ -445,7 +446,7 @@ def _tangent_plane_bound(
     return most
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _choose_split(task: Floats, six: Floats, is_drift: bool) -> float:
     """Return what to halve: 0 the time, 1 to 3 the edge that begins at that corner; the longest of
     edges and corners' paths, or time where the sag is what is left open."""
@@ -480,7 +481,7 @@ def _split_task(task: Floats, one: Floats, other: Floats) -> None:
         one[j + k] = other[i + k] = 0.5 * (task[i + k] + task[j + k])
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _accept_bound(task: Floats, found: Floats) -> None:
     """Raise found (4,), depth and position, to a task's bound, at the middle of its triangle."""
     found[0] = task[UPPER]
@@ -596,7 +597,7 @@ def triangle_contact(
         top += (one > -np.inf) + (other > -np.inf)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def box_depth_bound(
     box: Floats, ends: Floats, span: Floats, arcs: Floats, first: int, last: int
 ) -> float:

@@ -20,6 +20,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 from trunnion.verify.kernels.body import (
     CLOSED_FIRST,
     CLOSED_LAST,
@@ -46,7 +47,7 @@ from trunnion.verify.kernels.tool_motion import (
 )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def blocked_by_known(
     tip: Floats,
     axis: Floats,
@@ -82,7 +83,7 @@ def blocked_by_known(
     return False
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def insert_obstacle(positions: Floats, count: int, x: float, y: float, z: float) -> int:
     """Insert an obstacle (mm) at the front of the `count` known ones in positions (w, 3), dropping the
     last when all rows are in use; return the new count."""
@@ -91,7 +92,7 @@ def insert_obstacle(positions: Floats, count: int, x: float, y: float, z: float)
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _move_to_front(positions: Floats, at: int, x: float, y: float, z: float) -> None:
     """Shift rows 0 to at - 1 of positions (w, 3) down by one and write (x, y, z) into row 0; the old row
     `at` is overwritten."""
@@ -101,7 +102,7 @@ def _move_to_front(positions: Floats, at: int, x: float, y: float, z: float) -> 
     positions[0, 0], positions[0, 1], positions[0, 2] = x, y, z
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def blocked_by_known_loop(
     tips: Floats,
     axes: Floats,
@@ -124,7 +125,7 @@ def blocked_by_known_loop(
         )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def insert_obstacle_loop(found: Floats, rows: Ints, positions: Floats, count: Ints) -> None:
     """Add the points found (n, 3) that stopped poses, NaN where none did, to the lists positions (k, w,
     3), count (k,) of the positions rows (n,)."""

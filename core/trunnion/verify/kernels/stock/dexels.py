@@ -33,6 +33,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 from trunnion.verify.kernels.body import (
     CLOSED_FIRST,
     CLOSED_LAST,
@@ -94,7 +95,7 @@ _in_body = njit(nogil=True, inline="always")(depth_in_body.py_func)
 """Written into its callers, as are those marked so below: calls of their own take half as long again (measured)."""
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _body_depth(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, t: float
 ) -> tuple[float, float, float]:
@@ -124,7 +125,7 @@ def _body_depth(
     return depth - ray[SMALLER], along, -(nx * gx + ny * gy + nz * gz)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _swept_depth(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float
 ) -> tuple[float, float, float]:
@@ -169,7 +170,7 @@ def _swept_depth(
     return most, slope, t0 if f0 > f1 else t1
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _bisect_entry(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, outside: float, inside: float
 ) -> float:
@@ -184,7 +185,7 @@ def _bisect_entry(
     return inside
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _newton_entry(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
 ) -> tuple[float, float]:
@@ -215,7 +216,7 @@ def _newton_entry(
     return np.nan, 0.5
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _depth_bound(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
 ) -> float:
@@ -229,7 +230,7 @@ def _depth_bound(
     return f + max(slope * (end - w), 0.0) + max(s, 0.0) + ray[TWIST] * abs(end - w)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _max_depth_turning(
     arcs: Floats,
     first: int,
@@ -262,7 +263,7 @@ def _max_depth_turning(
     return best, position
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _max_depth(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, low: float, high: float
 ) -> tuple[float, float]:
@@ -293,7 +294,7 @@ def _max_depth(
     return best, position
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def _ray_in_tool_frame(ray: Floats, span: Floats, u: float, v: float) -> None:
     """Write the ray at (u, v) into the tool frames of a span: foot and direction at the start, and
     what both gain until the end.
@@ -331,7 +332,7 @@ def _ray_in_tool_frame(ray: Floats, span: Floats, u: float, v: float) -> None:
     ray[6], ray[7] = 0.0, 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _arc_distance(span: Floats, u: float, v: float, w: float) -> float:
     """Return how far (mm) a point (u, v, w) is from the tool axis that moves along an arc, across the
     axis: to the circle in the arc's sector, else to the nearer end."""
@@ -350,7 +351,7 @@ def _arc_distance(span: Floats, u: float, v: float, w: float) -> float:
     return math.sqrt(max(nearest, 0.0))
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _disc_radius(arcs: Floats, first: int, last: int, limit: float, h: float) -> float:
     """Return the radius (mm) of what a body cuts at a height, less SHRINK; 0 where it cuts nothing."""
     if h > limit - SHRINK or depth_in_body(arcs, first, last, 0.0, h)[0] <= SHRINK:
@@ -358,7 +359,7 @@ def _disc_radius(arcs: Floats, first: int, last: int, limit: float, h: float) ->
     return radius_at(arcs, first, last, h) - SHRINK
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _swept_disc_interval(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats
 ) -> tuple[float, float]:
@@ -395,7 +396,7 @@ def _swept_disc_interval(
     return low, high
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _insert_sorted(ray: Floats, n: int, w: float) -> int:
     """Insert a position into those marked on a ray, in order; return how many there are."""
     k = MARKS + n
@@ -406,7 +407,7 @@ def _insert_sorted(ray: Floats, n: int, w: float) -> int:
     return n + 1
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _tridexel_cut_arc(
     arcs: Floats,
     first: int,
@@ -438,7 +439,7 @@ def _tridexel_cut_arc(
     if lateral >= radius + r:
         return 0.0, True
     half = math.sqrt((radius + r) ** 2 - lateral * lateral)
-    if ray_misses(rays, cell, max(bottom, middle - half), min(top, middle + half)):
+    if ray_misses(rays.ray, rays.ends, cell, max(bottom, middle - half), min(top, middle + half)):
         return 0.0, True
     n = 0
     for circle in (radius + r, radius - r):
@@ -475,7 +476,7 @@ def _tridexel_cut_arc(
     return gone, True
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _both_inside_at(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float, t: float
 ) -> bool:
@@ -486,7 +487,7 @@ def _both_inside_at(
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _inside_together(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float
 ) -> bool:
@@ -521,7 +522,7 @@ def _inside_together(
     return False
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _certain_interval(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, a: float, b: float
 ) -> tuple[float, float]:
@@ -546,7 +547,7 @@ def _certain_interval(
     return b, np.nan
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _tridexel_cut_turning(
     arcs: Floats,
     first: int,
@@ -576,7 +577,7 @@ def _tridexel_cut_turning(
     return gone, True
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _tridexel_cut_ray(
     arcs: Floats,
     first: int,
@@ -597,6 +598,7 @@ def _tridexel_cut_ray(
     A closed form where the ray lies across the axis of a tool that moves level; else each interval
     of material is searched from both ends.
     """
+    table, ends = rays.ray, rays.ends
     if abs(ray[5]) + abs(ray[8]) + ray[TWIST] < LEVEL:
         if span[ARC_RADIUS] == 0.0:
             a, b = _swept_disc_interval(arcs, first, last, limit, ray)
@@ -607,9 +609,9 @@ def _tridexel_cut_ray(
     gone = 0.0
     middle = 0.5 * (w_low + w_high)
     k = 0
-    while k < rays.ray[cell, COUNT]:
-        m = rays.ray[cell, FIRST] + k
-        a, b = max(rays.ends[m, 0], w_low), min(rays.ends[m, 1], w_high)
+    while k < table[cell, COUNT]:
+        m = table[cell, FIRST] + k
+        a, b = max(ends[m, 0], w_low), min(ends[m, 1], w_high)
         if b <= a:
             k += 1
             continue
@@ -639,7 +641,7 @@ def _tridexel_cut_ray(
             k += 1
             continue
         # A cut may need one more interval, a gap another; the caller enlarges the rays and resumes.
-        before = rays.ray[cell, COUNT]
+        before = table[cell, COUNT]
         # Of a tool that turns, both entries in the body at one of their times show that all between is.
         if turns and not (
             _both_inside_at(arcs, first, last, limit, ray, from_far, from_near, t_near)
@@ -655,11 +657,11 @@ def _tridexel_cut_ray(
             return gone, False
         else:
             gone += subtract_interval(rays, cell, k, from_a, from_b)
-        k += 1 + rays.ray[cell, COUNT] - before
+        k += 1 + table[cell, COUNT] - before
     return gone, True
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _neighbour_material(
     rays: Rays,
     columns: int,
@@ -673,17 +675,18 @@ def _neighbour_material(
 ) -> float:
     """Return a position (w) between a and b where a ray of a cell, or of one beside it in the tile, has
     material thicker than `thick`; NaN when none has."""
+    table, ends = rays.ray, rays.ends
     for y in range(max(j - 1, row), min(j + 2, end_row)):
         for x in range(max(i - 1, 0), min(i + 2, columns)):
             cell = y * columns + x
-            for m in range(rays.ray[cell, FIRST], rays.ray[cell, FIRST] + rays.ray[cell, COUNT]):
-                c, d = max(a, rays.ends[m, 0]), min(b, rays.ends[m, 1])
-                if d - c > NOISE and rays.ends[m, 1] - rays.ends[m, 0] > thick:
+            for m in range(table[cell, FIRST], table[cell, FIRST] + table[cell, COUNT]):
+                c, d = max(a, ends[m, 0]), min(b, ends[m, 1])
+                if d - c > NOISE and ends[m, 1] - ends[m, 0] > thick:
                     return 0.5 * (c + d)
     return np.nan
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _may_hide(
     arcs: Floats,
     first: int,
@@ -704,11 +707,12 @@ def _may_hide(
     The tangent at the deepest position bounds the depth across the cell: its gradient has length 1 at
     most, so with `slope` along the ray it grows by sqrt(1 - slope^2) times half a diagonal at most.
     """
+    table, ends = rays.ray, rays.ends
     for y in range(max(j - 1, row), min(j + 2, end_row)):
         for x in range(max(i - 1, 0), min(i + 2, columns)):
             cell = y * columns + x
-            for m in range(rays.ray[cell, FIRST], rays.ray[cell, FIRST] + rays.ray[cell, COUNT]):
-                a, b = max(box[2], rays.ends[m, 0]), min(box[5], rays.ends[m, 1])
+            for m in range(table[cell, FIRST], table[cell, FIRST] + table[cell, COUNT]):
+                a, b = max(box[2], ends[m, 0]), min(box[5], ends[m, 1])
                 if b <= a:
                     continue
                 deepest, w = _max_depth_turning(
@@ -791,13 +795,116 @@ def _graze_candidates(
                     listed += 1
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _flute_limit(piece: Floats, p: int, last: int) -> float:
     """Return the height (mm) where a tool's flutes end, for the last piece that cuts: its closed body
     reaches beyond into the next one. Infinite for others."""
     if piece[p, KIND] == 0.0 and p + 1 < last and piece[p + 1, KIND] != 0.0:
         return piece[p, Z_HIGH]
     return np.inf
+
+
+@njit(**BORROWED)
+def _cut_by_piece(
+    arcs: Floats,
+    first: int,
+    last: int,
+    limit: float,
+    span: Floats,
+    rays: Rays,
+    columns: int,
+    row: int,
+    end_row: int,
+    origin: Floats,
+    pitch: float,
+    ray: Floats,
+    box: Floats,
+    capsule: Floats,
+    frustum: Floats,
+    begin: Ints,
+) -> tuple[float, bool]:
+    """Cut a tile's rays by a piece within a span, between its bounds, from the row and column `begin` (2,) on; return the length (mm)
+    that is gone, and whether all is done: else `begin` is where a ray had no room."""
+    table, ends = rays.ray, rays.ends
+    gone = 0.0
+    j0, j1 = cell_range(box[1], box[4], origin[1], pitch, row, end_row)
+    for j in range(max(j0, begin[0]), j1):
+        v = origin[1] + (j + 0.5) * pitch
+        least, most = capsule_row(capsule, v)
+        if least > most:
+            continue
+        i0, i1 = cell_range(max(box[0], least), min(box[3], most), origin[0], pitch, 0, columns)
+        for i in range(max(i0, begin[1]) if j == begin[0] else i0, i1):
+            cell = j * columns + i
+            if ray_misses(table, ends, cell, box[2], box[5]):
+                continue
+            u = origin[0] + (i + 0.5) * pitch
+            low, high = frustum_interval(frustum, u, v)
+            low, high = max(low, box[2]), min(high, box[5])
+            if low >= high or ray_misses(table, ends, cell, low, high):
+                continue
+            _ray_in_tool_frame(ray, span, u, v)
+            more, whole = _tridexel_cut_ray(
+                arcs, first, last, limit, ray, span, u, v, rays, cell, low, high
+            )
+            gone += more
+            if not whole:
+                begin[0], begin[1] = j, i
+                return gone, False
+    return gone, True
+
+
+@njit(**BORROWED)
+def _deepest_of_piece(
+    arcs: Floats,
+    first: int,
+    last: int,
+    span: Floats,
+    rays: Rays,
+    columns: int,
+    row: int,
+    end_row: int,
+    origin: Floats,
+    pitch: float,
+    ray: Floats,
+    box: Floats,
+    capsule: Floats,
+    best: float,
+    position: Floats,
+) -> float:
+    """Return how deep (mm) a piece is in a tile's material within a span, at least `best`; where it is deeper, position (3,) gets the place
+    (u, v, w)."""
+    table, ends = rays.ray, rays.ends
+    j0, j1 = cell_range(box[1], box[4], origin[1], pitch, row, end_row)
+    for j in range(j0, j1):
+        v = origin[1] + (j + 0.5) * pitch
+        least, most = capsule_row(capsule, v)
+        if least > most:
+            continue
+        i0, i1 = cell_range(max(box[0], least), min(box[3], most), origin[0], pitch, 0, columns)
+        for i in range(i0, i1):
+            cell = j * columns + i
+            if ray_misses(table, ends, cell, box[2], box[5]):
+                continue
+            u = origin[0] + (i + 0.5) * pitch
+            # Only the deepest of a move is wanted: an interval that cannot be deeper than what is known is skipped.
+            _ray_in_tool_frame(ray, span, u, v)
+            for m in range(table[cell, FIRST], table[cell, FIRST] + table[cell, COUNT]):
+                a, b = max(ends[m, 0], box[2]), min(ends[m, 1], box[5])
+                # What is thin is nowhere deeper in a body than it is thick.
+                thick = ends[m, 1] - ends[m, 0]
+                if (
+                    b <= a
+                    or thick <= best
+                    or _depth_bound(arcs, first, last, np.inf, ray, a, b) <= best
+                ):
+                    continue
+                deepest, w = _max_depth_turning(arcs, first, last, np.inf, ray, a, b, best)
+                deepest = min(deepest, thick)
+                if deepest > best:
+                    best = deepest
+                    position[0], position[1], position[2] = u, v, w
+    return best
 
 
 @njit(cache=True, nogil=True)
@@ -852,18 +959,20 @@ def tridexel_cut_tile(
     Returns whether all is done: when rays have no room for one more interval, `resume` says where
     to continue. Tiles are independent, so the result doesn't depend on how many run at a time.
     """
+    table, ends = rays.ray, rays.ends
     ray, box, capsule, corner = np.zeros(RAY_COLUMNS), np.empty(6), np.empty(5), np.empty(2)
     frustum, enclosing = np.empty(FRUSTUM), np.empty((len(piece), 2))
+    begin, nowhere = np.zeros(2, np.int64), np.empty(3)
     for p in range(len(piece)):
         enclosing[p, 0], enclosing[p, 1] = enclosing_frustum(arcs, piece[p])
     ray[SMALLER] = SHRINK
     # Range of w that holds the tile's material: what lies outside of it is skipped.
     bottom, top = np.inf, -np.inf
     for cell in range(row * columns, end_row * columns):
-        if rays.ray[cell, COUNT] > 0:
-            first = rays.ray[cell, FIRST]
-            bottom = min(bottom, rays.ends[first, 0])
-            top = max(top, rays.ends[first + rays.ray[cell, COUNT] - 1, 1])
+        if table[cell, COUNT] > 0:
+            first = table[cell, FIRST]
+            bottom = min(bottom, ends[first, 0])
+            top = max(top, ends[first + table[cell, COUNT] - 1, 1])
     v_low, v_high = origin[1] + row * pitch, origin[1] + end_row * pitch
     # Rapids are counted from the first move on, as `grazed` has rows for each.
     rapids = 0
@@ -886,7 +995,7 @@ def tridexel_cut_tile(
                 a, b = row * columns, end_row * columns
                 corner[0], corner[1] = origin[0], v_low
                 engagement_in_dexels(
-                    Rays(rays.ray[a:b], rays.ends, rays.free),
+                    Rays(table[a:b], rays.ends, rays.free),
                     corner,
                     pitch,
                     end_row - row,
@@ -909,6 +1018,7 @@ def tridexel_cut_tile(
                 max(resume[1], span_start[n]) if resumes else span_start[n], span_start[n + 1]
             ):
                 resumes = resumes and s == resume[1]
+                own = span[s]
                 if (
                     span[s, CUT_BOX + 1] > v_high
                     or span[s, CUT_BOX + 4] < v_low
@@ -916,74 +1026,59 @@ def tridexel_cut_tile(
                     or span[s, CUT_BOX + 5] < bottom
                 ):
                     continue
-                ray[TWIST] = _ray_turn(span[s])
+                ray[TWIST] = _ray_turn(own)
                 for p in range(max(resume[2], p0) if resumes else p0, p1):
                     resumes = resumes and p == resume[2]
                     if piece[p, KIND] != 0.0:
                         break
-                    swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
+                    swept_box(box, own, piece[p], ray[TWIST] > 0.0)
                     if box[2] > top or box[5] < bottom:
                         continue
                     first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
                     limit = _flute_limit(piece, p, p1)
-                    swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
+                    swept_capsule(capsule, own, piece[p], ray[TWIST] > 0.0)
                     swept_frustum(
                         frustum,
-                        span[s],
+                        own,
                         piece[p],
                         enclosing[p, 0],
                         enclosing[p, 1],
                         ray[TWIST] > 0.0,
                     )
-                    j0, j1 = cell_range(box[1], box[4], origin[1], pitch, row, end_row)
-                    for j in range(max(j0, resume[3]) if resumes else j0, j1):
-                        v = origin[1] + (j + 0.5) * pitch
-                        least, most = capsule_row(capsule, v)
-                        if least > most:
-                            continue
-                        i0, i1 = cell_range(
-                            max(box[0], least), min(box[3], most), origin[0], pitch, 0, columns
+                    begin[0], begin[1] = (resume[3], resume[4]) if resumes else (0, 0)
+                    gone, whole = _cut_by_piece(
+                        arcs,
+                        first,
+                        end,
+                        limit,
+                        own,
+                        rays,
+                        columns,
+                        row,
+                        end_row,
+                        origin,
+                        pitch,
+                        ray,
+                        box,
+                        capsule,
+                        frustum,
+                        begin,
+                    )
+                    removed[n] += gone
+                    if not whole:
+                        resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = (
+                            n,
+                            s,
+                            p,
+                            begin[0],
+                            begin[1],
+                            1,
                         )
-                        for i in range(
-                            max(i0, resume[4]) if resumes and j == resume[3] else i0, i1
-                        ):
-                            cell = j * columns + i
-                            if ray_misses(rays, cell, box[2], box[5]):
-                                continue
-                            u = origin[0] + (i + 0.5) * pitch
-                            low, high = frustum_interval(frustum, u, v)
-                            low, high = max(low, box[2]), min(high, box[5])
-                            if low >= high or ray_misses(rays, cell, low, high):
-                                continue
-                            _ray_in_tool_frame(ray, span[s], u, v)
-                            gone, whole = _tridexel_cut_ray(
-                                arcs,
-                                first,
-                                end,
-                                limit,
-                                ray,
-                                span[s],
-                                u,
-                                v,
-                                rays,
-                                cell,
-                                low,
-                                high,
-                            )
-                            removed[n] += gone
-                            if not whole:
-                                resume[0], resume[1], resume[2], resume[3], resume[4], resume[5] = (
-                                    n,
-                                    s,
-                                    p,
-                                    j,
-                                    i,
-                                    1,
-                                )
-                                return False
+                        return False
         # Then what must not be in material: of rapids all of the tool, of feed moves what doesn't
         # cut, against the stock as it now stands.
         for s in range(span_start[n], span_start[n + 1]):
+            own = span[s]
             if (
                 span[s, ALL_BOX + 1] > v_high
                 or span[s, ALL_BOX + 4] < v_low
@@ -991,7 +1086,7 @@ def tridexel_cut_tile(
                 or span[s, ALL_BOX + 5] < bottom
             ):
                 continue
-            ray[TWIST] = _ray_turn(span[s])
+            ray[TWIST] = _ray_turn(own)
             if span[s, ARC_RADIUS] != 0.0 and abs(span[s, FRAME0 + 8]) < 0.5:
                 # Of an arc that is one span, the rays along the axis give its depth.
                 continue
@@ -999,54 +1094,32 @@ def tridexel_cut_tile(
                 cuts = piece[p, KIND] == 0.0
                 if cuts and not rapid[n]:
                     continue
-                swept_box(box, span[s], piece[p], ray[TWIST] > 0.0)
+                swept_box(box, own, piece[p], ray[TWIST] > 0.0)
                 if box[2] > top or box[5] < bottom:
                     continue
                 first, end = int(piece[p, CLOSED_FIRST]), int(piece[p, CLOSED_LAST])
-                swept_capsule(capsule, span[s], piece[p], ray[TWIST] > 0.0)
-                j0, j1 = cell_range(box[1], box[4], origin[1], pitch, row, end_row)
-                for j in range(j0, j1):
-                    v = origin[1] + (j + 0.5) * pitch
-                    least, most = capsule_row(capsule, v)
-                    if least > most:
-                        continue
-                    i0, i1 = cell_range(
-                        max(box[0], least), min(box[3], most), origin[0], pitch, 0, columns
-                    )
-                    for i in range(i0, i1):
-                        cell = j * columns + i
-                        if ray_misses(rays, cell, box[2], box[5]):
-                            continue
-                        u = origin[0] + (i + 0.5) * pitch
-                        # Only the deepest of a move is wanted: an interval that cannot be deeper
-                        # than what is known is skipped.
-                        _ray_in_tool_frame(ray, span[s], u, v)
-                        for m in range(
-                            rays.ray[cell, FIRST], rays.ray[cell, FIRST] + rays.ray[cell, COUNT]
-                        ):
-                            a, b = max(rays.ends[m, 0], box[2]), min(rays.ends[m, 1], box[5])
-                            best = depth[n] if cuts else body[n]
-                            # What is thin is nowhere deeper in a body than it is thick.
-                            thick = rays.ends[m, 1] - rays.ends[m, 0]
-                            if (
-                                b <= a
-                                or thick <= best
-                                or _depth_bound(arcs, first, end, np.inf, ray, a, b) <= best
-                            ):
-                                continue
-                            deepest, w = _max_depth_turning(
-                                arcs, first, end, np.inf, ray, a, b, best
-                            )
-                            deepest = min(deepest, thick)
-                            if deepest > best and cuts:
-                                depth[n], position[n, 0], position[n, 1], position[n, 2] = (
-                                    deepest,
-                                    u,
-                                    v,
-                                    w,
-                                )
-                            elif deepest > best:
-                                body[n] = deepest
+                swept_capsule(capsule, own, piece[p], ray[TWIST] > 0.0)
+                deepest = _deepest_of_piece(
+                    arcs,
+                    first,
+                    end,
+                    own,
+                    rays,
+                    columns,
+                    row,
+                    end_row,
+                    origin,
+                    pitch,
+                    ray,
+                    box,
+                    capsule,
+                    depth[n] if cuts else body[n],
+                    position[n] if cuts else nowhere,
+                )
+                if cuts:
+                    depth[n] = deepest
+                else:
+                    body[n] = deepest
                 # Rapids that miss the rays may still enter between them.
                 if cuts and fine > 0 and depth[n] <= allowed:
                     ray[SMALLER] = allowed
@@ -1054,7 +1127,7 @@ def tridexel_cut_tile(
                         arcs,
                         first,
                         end,
-                        span[s],
+                        own,
                         ray,
                         rays,
                         columns,
@@ -1070,7 +1143,7 @@ def tridexel_cut_tile(
     return True
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _spans_meet(span: Floats, first: int, last: int, v_low: float, v_high: float) -> bool:
     """Return whether what cuts comes between two coordinates v (mm) in spans `first` to `last`."""
     near = False
@@ -1079,7 +1152,7 @@ def _spans_meet(span: Floats, first: int, last: int, v_low: float, v_high: float
     return near
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def _ray_turn(span: Floats) -> float:
     """Return how far the direction of rays turns in a span as the tool sees it (the length of its
     change); 0 when the axis keeps still."""

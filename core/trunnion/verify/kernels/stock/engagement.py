@@ -151,7 +151,8 @@ def _inside_intervals(
     x: float,
     y: float,
     z: float,
-    rays: Rays,
+    table: Ints,
+    ends: Floats,
     origin: Floats,
     cell: float,
     rows: int,
@@ -162,11 +163,11 @@ def _inside_intervals(
     if not (0 <= i < columns and 0 <= j < rows):
         return False
     ray = j * columns + i
-    at = rays.ray[ray, FIRST]
-    for m in range(at, at + rays.ray[ray, COUNT]):
-        if z < rays.ends[m, 0]:
+    at = table[ray, FIRST]
+    for m in range(at, at + table[ray, COUNT]):
+        if z < ends[m, 0]:
             return False
-        if z < rays.ends[m, 1]:
+        if z < ends[m, 1]:
             return True
     return False
 
@@ -250,6 +251,7 @@ def engagement_in_dexels(
     as in `engagement_in_zmap`. flute (s, 2): radius and height of the cutter, upwards from the tip, at
     which material beside it is looked for.
     """
+    table, ends = rays.ray, rays.ends
     margin, cell = 0.70711 * pitch, 1.0 / pitch
     v_low, v_high = origin[1], origin[1] + rows * pitch
     tip, axis, speed, turning, forward, across = (
@@ -319,7 +321,7 @@ def engagement_in_dexels(
                     x = tip[0] + f * forward[0] + g * across[0] + height * axis[0]
                     y = tip[1] + f * forward[1] + g * across[1] + height * axis[1]
                     z = tip[2] + f * forward[2] + g * across[2] + height * axis[2] + ABOVE
-                    if _inside_intervals(x, y, z, rays, origin, cell, rows, columns):
+                    if _inside_intervals(x, y, z, table, ends, origin, cell, rows, columns):
                         hits += 1
             if k >= 0:
                 counted[probe, k] += hits

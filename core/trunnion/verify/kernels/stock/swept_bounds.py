@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from trunnion.geometry.arrays import Floats
+from trunnion.geometry.kernels.kernel_arrays import BORROWED
 from trunnion.verify.kernels.body import (
     CLOSED_FIRST,
     CLOSED_LAST,
@@ -52,7 +53,7 @@ FLANK = 0.01
 """Share of a piece's height over which the slope of its flank at its upper end is measured."""
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def swept_box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
     """Write box (6,), low and high of u, v, w, of what a piece sweeps in a span.
 
@@ -80,7 +81,7 @@ def swept_box(box: Floats, span: Floats, piece: Floats, turns: bool) -> None:
         box[m], box[3 + m] = low, high
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def swept_capsule(capsule: Floats, span: Floats, piece: Floats, turns: bool) -> None:
     """Write capsule (5,): the (u, v) of both ends of a piece's axis half-way through a span, and the radius (mm)
     within which all lies that the piece sweeps; infinite for an arc that is one span.
@@ -102,7 +103,7 @@ def swept_capsule(capsule: Floats, span: Floats, piece: Floats, turns: bool) -> 
     capsule[4] = piece[R_MAX] + 0.5 * way + (BENT if turns else 0.0) + EDGE
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def capsule_row(capsule: Floats, v: float) -> tuple[float, float]:
     """Return the least and the greatest u of a capsule at some v, the least greater where it is not there.
 
@@ -131,7 +132,7 @@ def capsule_row(capsule: Floats, v: float) -> tuple[float, float]:
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def cell_range(
     low: float, high: float, origin: float, pitch: float, first: int, last: int
 ) -> tuple[int, int]:
@@ -142,7 +143,7 @@ def cell_range(
     return max(a, first), min(b, last)
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def enclosing_frustum(arcs: Floats, piece: Floats) -> tuple[float, float]:
     """Return radius (mm) at the tip and growth a mm of height of a frustum about the tool axis that holds a piece.
 
@@ -162,7 +163,7 @@ def enclosing_frustum(arcs: Floats, piece: Floats) -> tuple[float, float]:
     return piece[R_MAX] - grows * top + bulge + EDGE, grows
 
 
-@njit(cache=True, nogil=True)
+@njit(**BORROWED)
 def swept_frustum(
     frustum: Floats, span: Floats, piece: Floats, radius: float, grows: float, turns: bool
 ) -> None:
@@ -220,7 +221,7 @@ def swept_frustum(
         frustum[10] = frustum[3] ** 2 + frustum[4] ** 2
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(**BORROWED, inline="always")
 def frustum_interval(frustum: Floats, u: float, v: float) -> tuple[float, float]:
     """Return from where to where (w) the ray at (u, v) is in a frustum, low > high where it misses it.
 
