@@ -26,9 +26,6 @@ class Rays(NamedTuple):
 
     ray (c, 3): a row a ray, with the columns above. free (2,) of a tile: the first row of `ends` that no ray of it has, and the one after
     its last. A ray that is full moves there, to twice the capacity.
-
-    Compiled code takes the arrays out once, before its loops: every time that it does, it counts who holds them, and threads that count
-    the same array at a time wait for each other (measured: a third of all the time).
     """
 
     ray: Ints
