@@ -271,6 +271,24 @@ def test_the_tree_holds_every_triangle_once_inside_its_boxes():
         assert tree.node_face[node] in (-1, *tree.face[np.concatenate(rows)])
 
 
+@pytest.mark.parametrize("leading", [[], [0, 2], [1], list(range(6))])
+def test_leading_faces_are_asked_alone_by_the_tree_of_all(leading):
+    points, triangles, face = wavy_block(3000)
+    facets = Facets.of_mesh(points, triangles, face, np.arange(1, face.max() + 2))
+    engine, alone = FacetContact(facets, np.array(leading, int)), facets.of_faces(np.array(leading))
+    tree, first = engine.tree, engine.of_leading().tree
+    assert sorted(map(tuple, tree.corners)) == sorted(map(tuple, points[triangles].reshape(-1, 9)))
+    own = FacetContact(alone).tree
+    for name in ("boxes", "skip", "leaves", "node_face", "corners", "normals", "face"):
+        assert np.array_equal(getattr(first, name), getattr(own, name))
+        assert np.shares_memory(getattr(first, name), getattr(tree, name)) or not leading
+    moves = moves_of([CASE.section])
+    rows = np.arange(0, len(moves), 7)
+    one, two = FacetContact(facets).along(moves, rows), engine.along(moves, rows)
+    deeper = np.abs(np.maximum(one.depth, 0.0) - np.maximum(two.depth, 0.0))
+    assert deeper.max() <= tolerance.TURNING_BOUND < one.depth.max()
+
+
 def test_compiled_loops_agree_with_themselves_uncompiled():
     way, plain = np.zeros(kernel.MOTION_COLUMNS), np.zeros(kernel.MOTION_COLUMNS)
     start, end, centre = np.array([1.0, 2.0, 3.0]), np.array([4.0, 1.0, 2.0]), np.full(3, np.nan)

@@ -69,12 +69,15 @@ class PartContact:
                 f"face {int(surfaces.tag[missing[0]])} has no closed form: its contact needs the part's facets"
             )
         self._strips = StripContact(surfaces)
-        self._every = FacetContact(facets) if facets is not None and facets.whole else None
-        self._free = (
-            FacetContact(facets.of_faces(surfaces.free))
-            if facets is not None and len(surfaces.free)
-            else None
-        )
+        self._every = self._free = None
+        if facets is not None and facets.whole:
+            self._every = FacetContact(facets, surfaces.free)
+        if facets is not None and len(surfaces.free):
+            self._free = (
+                self._every.of_leading()
+                if self._every is not None
+                else FacetContact(facets.of_faces(surfaces.free))
+            )
         self._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
 
     def along(self, moves: Moves, progress: Progress = NO_PROGRESS, threads: int = 0) -> Contact:

@@ -40,7 +40,10 @@ LEAF = 4
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class FacetTree:
-    """Triangles in the order of the leaves of a tree of boxes, in preorder; `kernels/contact/bvh.py` names the columns."""
+    """Triangles in the order of the leaves of trees of boxes, in preorder one behind the other; `kernels/contact/bvh.py` names the columns.
+
+    The first tree has `leading` nodes.
+    """
 
     boxes: Floats
     skip: Ints
@@ -49,33 +52,56 @@ class FacetTree:
     corners: Floats
     normals: Floats
     face: Ints
+    leading: int
+
+    def first(self) -> FacetTree:
+        """Return the first tree alone, in the same memory."""
+        t = int(self.leaves[: self.leading].sum(axis=1).max(initial=0))
+        return FacetTree(
+            boxes=self.boxes[: self.leading],
+            skip=self.skip[: self.leading],
+            leaves=self.leaves[: self.leading],
+            node_face=self.node_face[: self.leading],
+            corners=self.corners[:t],
+            normals=self.normals[:t],
+            face=self.face[:t],
+            leading=self.leading,
+        )
 
 
-def tree_of(points: Floats, triangles: Ints, face: Ints) -> FacetTree:
-    """Return the tree over triangles (t, 3) of points (v, 3), each with the row of its face (t,)."""
-    corners = points[triangles]
-    t = len(corners)
+def tree_of(points: Floats, triangles: Ints, face: Ints, leading: Ints | None = None) -> FacetTree:
+    """Return the tree over triangles (t, 3) of points (v, 3), each with the row of its face (t,).
+
+    The faces of the rows `leading` have a tree of their own, the others one behind it: a traversal goes through both as if they were one.
+    """
+    ahead = np.ones(len(face), bool) if leading is None else np.isin(face, leading)
+    rows = np.concatenate([np.flatnonzero(ahead), np.flatnonzero(~ahead)])
+    corners, face, t = points[triangles[rows]], face[rows], len(rows)
     order, boxes = np.zeros(t, np.int64), np.zeros((2 * t, 6))
     skip, leaves, node_face = (
         np.zeros(2 * t, np.int64),
         np.zeros((2 * t, 2), np.int64),
         np.zeros(2 * t, np.int64),
     )
-    count = (
-        build_bvh(
-            corners.min(axis=1),
-            corners.max(axis=1),
-            face,
-            LEAF,
-            order,
-            boxes,
-            skip,
-            leaves,
-            node_face,
-        )
-        if t
-        else 0
-    )
+    counts = [0]
+    for some in (slice(0, int(ahead.sum())), slice(int(ahead.sum()), t)):
+        n = counts[-1]
+        if some.start < some.stop:
+            n += build_bvh(
+                corners[some].min(axis=1),
+                corners[some].max(axis=1),
+                face[some],
+                LEAF,
+                order[some],
+                boxes[n:],
+                skip[n:],
+                leaves[n:],
+                node_face[n:],
+            )
+        skip[counts[-1] : n] += counts[-1]
+        leaves[counts[-1] : n, 0] += some.start
+        order[some] += some.start
+        counts.append(n)
     corners = corners[order]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(across, axis=1, keepdims=True)
@@ -83,6 +109,7 @@ def tree_of(points: Floats, triangles: Ints, face: Ints) -> FacetTree:
     normals = np.where(
         size > 0.0, across / np.where(size > 0.0, size, 1.0), np.array([0.0, 0.0, 1.0])
     )
+    count = counts[-1]
     return FacetTree(
         boxes=boxes[:count].copy(),
         skip=skip[:count].copy(),
@@ -91,19 +118,27 @@ def tree_of(points: Floats, triangles: Ints, face: Ints) -> FacetTree:
         corners=corners.reshape(-1, 9),
         normals=normals,
         face=face[order],
+        leading=counts[1],
     )
 
 
 class FacetContact:
-    """Triangles made ready for many questions. `facets` must be in the frame of the moves."""
+    """Triangles made ready for many questions. `facets` must be in the frame of the moves.
 
-    def __init__(self, facets: Facets) -> None:
-        self.facets = facets
+    The faces of the rows `leading` can be asked alone (`of_leading`), by the same tree.
+    """
+
+    def __init__(self, facets: Facets, leading: Ints | None = None) -> None:
+        self.facets, self._leading = facets, leading
 
     @cached_property
     def tree(self) -> FacetTree:
         """The tree over the triangles, built on first use."""
-        return tree_of(self.facets.points, self.facets.triangles, self.facets.face)
+        return tree_of(self.facets.points, self.facets.triangles, self.facets.face, self._leading)
+
+    def of_leading(self) -> FacetContact:
+        """Return the leading faces alone, made ready together with all."""
+        return _LeadingContact(self)
 
     def _ready(self, progress: Progress) -> FacetTree:
         """Return the tree, with looks at progress while it is built."""
@@ -228,6 +263,19 @@ class FacetContact:
             threads,
         )
         return penetration
+
+
+class _LeadingContact(FacetContact):
+    """The leading faces of a contact."""
+
+    def __init__(self, whole: FacetContact) -> None:
+        super().__init__(whole.facets)
+        self._whole = whole
+
+    @cached_property
+    def tree(self) -> FacetTree:
+        """The first tree over the triangles of the whole."""
+        return self._whole.tree.first()
 
 
 def _starts(cost: Floats) -> Ints:
