@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 from trunnion import tolerance
-from trunnion.progress import Progress
+from trunnion.progress import NO_PROGRESS, Progress
 
 if TYPE_CHECKING:
     from trunnion.geometry.mesh import Mesh
@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 class PartWork(Protocol):
     """Work on a part that depends on nothing else; equal ones come to the same, and they and their results can be pickled."""
 
-    def done(self, part: Part) -> Any:
+    def load(self) -> None:
+        """Load what does it, where some takes time to be loaded."""
+
+    def done(self, part: Part, progress: Progress = NO_PROGRESS) -> Any:
         """Return what comes of it."""
 
 
@@ -39,9 +42,13 @@ class MeshWork:
     chord: float = tolerance.CHORD
     angle: float = tolerance.MESH_ANGLE
 
-    def done(self, part: Part) -> Mesh:
+    def load(self) -> None:
+        """Nothing that is not loaded with a part."""
+
+    def done(self, part: Part, progress: Progress = NO_PROGRESS) -> Mesh:
         """Return them."""
-        return part.mesh(self.chord, self.angle)
+        with part.watched(progress):
+            return part.mesh(self.chord, self.angle)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +62,14 @@ class RefinedMeshWork:
         """Return the opening of some faces within one chord error (mm)."""
         return RefinedMeshWork(tuple((tag, chord) for tag in sorted(tags)))
 
-    def done(self, part: Part) -> RefinedMesh:
+    def load(self) -> None:
+        """Load the compiled splines."""
+        from trunnion.geometry.surface.spline import load_splines
+
+        load_splines()
+
+    def done(self, part: Part, progress: Progress = NO_PROGRESS) -> RefinedMesh:
         """Return them."""
         from trunnion.part.shape.refine_mesh import opened
 
-        return opened(part, dict(self.chords))
+        return opened(part, dict(self.chords), progress)

@@ -53,3 +53,15 @@ class SplineSurface:
             out,
         )
         return out
+
+
+def load_splines() -> None:
+    """Load what evaluates splines: a part of a second, once in a process."""
+    flat = SplineSurface(
+        knots_u=np.array([0.0, 0.0, 1.0, 1.0]),
+        knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
+        degree_u=1,
+        degree_v=1,
+        poles=np.ones((2, 2, 4)),
+    )
+    flat.at(np.zeros((1, 2)))

@@ -1,7 +1,8 @@
 """The process that reads a part file: a damaged file may crash, bloat or hang the CAD kernel, and then only this process ends.
 
 Started afresh (never forked) as `python -m trunnion.part.read.child FOLDER`. The folder holds the request and the file's bytes; the answer
-is written there. Where it is to stay, it then does work on the part (`part.work`), pickled on its standard input, until that ends.
+is written there. Where it is to stay, it then does work on the part (`part.work`), pickled on its standard input, until that ends. Where it
+can, it does that in copies of itself, one after another: only the end of a process gives back all the memory that the CAD kernel takes up.
 """
 
 from __future__ import annotations
@@ -13,19 +14,23 @@ import subprocess
 import sys
 import tempfile
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
+from functools import partial
 from itertools import count
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import IO, TYPE_CHECKING, Any
 
 from trunnion.findings import BadInput, OutOfMemory, TrunnionError
+from trunnion.forks import Fork, copies
 from trunnion.part.read.limits import ReadLimits
 from trunnion.part.read.request import ReadRequest
 from trunnion.part.work import PartWork
-from trunnion.progress import Progress
+from trunnion.progress import NO_PROGRESS, Progress
+
+if TYPE_CHECKING:
+    from trunnion.part.part import Part
 
 _LOOK = 0.02
 _CHECK = 0.1
@@ -98,7 +103,8 @@ class ReadingProcess:
                 return None
             progress.check()
             time.sleep(_LOOK)
-        return pickle.loads(file.read_bytes())
+        with file.open("rb") as stream:
+            return pickle.load(stream)
 
     def _has_read(self) -> bool:
         return self._stays and (Path(self._folder.name) / _PART).is_file()
@@ -122,16 +128,9 @@ class ReadingProcess:
 def _load() -> None:
     """Load what the part is wanted with next: that costs no time now, the other process is at work."""
     import trunnion.part.topology.boundary  # noqa: F401
-    from trunnion.geometry.surface.spline import SplineSurface
+    from trunnion.geometry.surface.spline import load_splines
 
-    flat = SplineSurface(
-        knots_u=np.array([0.0, 0.0, 1.0, 1.0]),
-        knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
-        degree_u=1,
-        degree_v=1,
-        poles=np.ones((2, 2, 4)),
-    )
-    flat.at(np.zeros((1, 2)))
+    load_splines()
 
 
 def _response(code: int, directory: Path, request: ReadRequest, limits: ReadLimits) -> bytes:
@@ -164,7 +163,8 @@ def main(folder: str) -> int:
         return _REFUSED
     except MemoryError:
         return _NO_MEMORY
-    _write_whole(directory / _PART, data)
+    with _whole(directory / _PART) as stream:
+        stream.write(data)
     if order["stays"]:
         _work_on(data, directory)
     return 0
@@ -181,19 +181,30 @@ def _work_on(data: bytes, directory: Path) -> None:
             work: PartWork = pickle.load(sys.stdin.buffer)
         except EOFError:
             return
-        made = None
-        # The other process does itself what fails here, and says why it can't.
-        with suppress(TrunnionError, MemoryError):
-            made = work.done(part)
-        _write_whole(
-            directory / f"work-{number}", pickle.dumps(made, protocol=pickle.HIGHEST_PROTOCOL)
-        )
+        # Once for all copies.
+        work.load()
+        job = partial(_work_to_file, work, part, directory / f"work-{number}")
+        if copies():
+            Fork(job).result(NO_PROGRESS)
+        else:
+            job(NO_PROGRESS)
 
 
-def _write_whole(file: Path, data: bytes) -> None:
-    """Write a file that is there only once it is whole."""
+def _work_to_file(work: PartWork, part: Part, file: Path, progress: Progress) -> None:
+    """Do some work and write what came of it, None where it failed: then the other process does it, and says why it can't."""
+    made = None
+    with suppress(TrunnionError, MemoryError):
+        made = work.done(part, progress)
+    with _whole(file) as stream:
+        pickle.dump(made, stream, protocol=pickle.HIGHEST_PROTOCOL)
+
+
+@contextmanager
+def _whole(file: Path) -> Iterator[IO[bytes]]:
+    """Open a file that is there only once it is whole."""
     begun = file.with_suffix(".begun")
-    begun.write_bytes(data)
+    with begun.open("wb") as stream:
+        yield stream
     begun.replace(file)
 
 
