@@ -8,7 +8,7 @@ stays as wide along it as it may be.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +41,8 @@ just within its limit, others would come nearer to that without end."""
 
 MANY = 4000
 """Positions evaluated between two looks at cancel: some hundredths of a second where the kernel does it one by one."""
+AT_ONCE = 1 << 16
+"""Positions whose derivatives are held at once: each takes 144 bytes, and there are millions."""
 PIECES = 1 << (ROUNDS + 2)
 """Numbers for all pieces of a piece of the border: halves of piece n are 2 n and 2 n + 1."""
 
@@ -139,6 +141,30 @@ def _key(pairs: Ints) -> Ints:
     return np.asarray((pairs.min(axis=1) << 32) | pairs.max(axis=1))
 
 
+def _side_keys(triangles: Ints) -> Ints:
+    """Return the keys (3 t,) of the sides of triangles (t, 3), those of a triangle one after another."""
+    ends = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    keys = np.minimum(*ends)
+    keys <<= 32
+    keys |= np.maximum(*ends)
+    return keys
+
+
+def _distinct(keys: Ints) -> tuple[Ints, Ints, Ints]:
+    """Return what `np.unique` does with index and inverse, in half of its memory: there are millions."""
+    order = np.argsort(keys, kind="stable")
+    ordered = keys[order]
+    fresh = np.ones(len(keys), bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=fresh[1:])
+    distinct, first = ordered[fresh], order[fresh]
+    # The place of the sorted keys is that of their numbers from here on.
+    np.cumsum(fresh, out=ordered)
+    ordered -= 1
+    which = np.empty_like(order)
+    which[order] = ordered
+    return distinct, first, which
+
+
 @dataclass(slots=True)
 class _Net:
     """The triangles while they are refined. uv (v, 2) is where points (v, 3) are on their faces' surfaces, owner (v,) the faces' rows;
@@ -202,11 +228,14 @@ class _Net:
     def off(self, nodes: Ints, shares: Floats) -> Floats:
         """Return how far (k,) the surface is at most from edges or triangles (k, n) of nodes, at shares (s, n) between those, along its
         normals there."""
-        owner, worst = self.owner[nodes[:, 0]], np.zeros(len(nodes))
-        for share in shares:
-            at = self.on(owner, self.between(nodes, share))
-            away = at[:, 0] - np.einsum("knc,n->kc", self.surface[nodes], share)
-            worst = np.maximum(worst, np.abs((away * self.normal(at)[0]).sum(axis=1)))
+        worst = np.zeros(len(nodes))
+        for rows in _stretches(len(nodes)):
+            some, far = nodes[rows], worst[rows]
+            owner = self.owner[some[:, 0]]
+            for share in shares:
+                at = self.on(owner, self.between(some, share))
+                away = at[:, 0] - np.einsum("knc,n->kc", self.surface[some], share)
+                np.maximum(far, np.abs((away * self.normal(at)[0]).sum(axis=1)), out=far)
         return worst
 
     def normal(self, at: Floats) -> tuple[Floats, Bools]:
@@ -225,9 +254,12 @@ class _Net:
         middle = np.full(len(self.triangles), np.nan)
         for k in range(ROUNDS + 1):
             self.progress.at(1.0 - 0.7**k, "Refining triangles")
-            pairs = self.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-            keys, first, edge = self._distinct(_key(pairs))
-            edges, edge = pairs[first], edge.reshape(-1, 3)
+            keys, first, edge = self._distinct(_side_keys(self.triangles))
+            row, side = np.divmod(first, 3)
+            edges = np.column_stack(
+                [self.triangles[row, side], self.triangles[row, (side + 1) % 3]]
+            )
+            edge = edge.reshape(-1, 3)
             off, border = self._edges_off(keys, edges, known, known_off)
             limit = self.limits[self.owner[edges[:, 0]]]
             np.minimum.at(limit, border[border >= 0], self._border_limits()[border >= 0])
@@ -253,9 +285,7 @@ class _Net:
     def _distinct(self, keys: Ints) -> tuple[Ints, Ints, Ints]:
         """Return the distinct ones of some keys, the first row of each, and which of them each key is."""
         return (
-            self.progress.aside(lambda _: np.unique(keys, return_index=True, return_inverse=True))
-            if len(keys) > MANY
-            else np.unique(keys, return_index=True, return_inverse=True)
+            self.progress.aside(lambda _: _distinct(keys)) if len(keys) > MANY else _distinct(keys)
         )
 
     def bounded(self) -> Floats:
@@ -345,7 +375,9 @@ class _Net:
         uv[new - len(self.points)] = np.array(
             [self.lines[k].Value(m).Coord() for k, m in middles]
         ).reshape(-1, 2)
-        surface = self.on(owner, uv)[:, 0]
+        surface = np.empty((len(uv), 3))
+        for some in _stretches(len(uv)):
+            surface[some] = self.on(owner[some], uv[some])[:, 0]
         points = surface.copy()
         points[new - len(self.points)] = self._border_at(pieces, ALONG[0])
         kept = self.border.some(~cut)
@@ -399,15 +431,17 @@ class _Net:
 
     def normals(self) -> Floats:
         """Return the outward unit normals (v, 3) of the faces at all points."""
-        normals, there = self.normal(self.on(self.owner, self.uv))
-        lost = np.flatnonzero(~there)
-        if len(lost):
-            # Beside a pole, where the surface has no normal, the one next to it.
-            partly = self.uv[lost] + tolerance.ANGLE * (
-                self.middles[self.owner[lost]] - self.uv[lost]
-            )
-            normals[lost] = self.normal(self.on(self.owner[lost], partly))[0]
-        return np.asarray(normals * self.sides[self.owner][:, None])
+        normals = np.empty_like(self.points)
+        for rows in _stretches(len(normals)):
+            owner, uv = self.owner[rows], self.uv[rows]
+            some, there = self.normal(self.on(owner, uv))
+            lost = np.flatnonzero(~there)
+            if len(lost):
+                # Beside a pole, where the surface has no normal, the one next to it.
+                partly = uv[lost] + tolerance.ANGLE * (self.middles[owner[lost]] - uv[lost])
+                some[lost] = self.normal(self.on(owner[lost], partly))[0]
+            normals[rows] = some * self.sides[owner][:, None]
+        return normals
 
     def result(self, tags: list[int], normals: Floats) -> RefinedMesh:
         """Return what was made, in the order of the faces."""
@@ -420,6 +454,12 @@ class _Net:
             face=self.face[order],
             bound=self.bound,
         )
+
+
+def _stretches(count: int) -> Iterator[slice]:
+    """Yield rows in stretches of `AT_ONCE`."""
+    for first in range(0, count, AT_ONCE):
+        yield slice(first, first + AT_ONCE)
 
 
 def _refuse_many(count: int, name: str, chord: float) -> None:
