@@ -20,16 +20,16 @@ from contextlib import suppress
 from operator import is_
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from trunnion.findings import TrunnionError
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.session import Session
 from trunnion.progress import LOOK_S, NO_PROGRESS, Progress
-from trunnion.report.palette import load_palette
+from trunnion.report.palette import Palette, load_palette
 
 if TYPE_CHECKING:
-    from trunnion.report.pictures import Picture
+    from trunnion.report.pictures import DrawnPicture, Picture
 
 Drawn = Callable[[Progress], tuple["Picture", ...]]
 """Waits for pictures and returns them."""
@@ -136,27 +136,38 @@ def main() -> None:
     # Answers alone go to the pipe: what libraries print would spoil them.
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    from trunnion.report.pictures import draw_plan, warm_graphics, write_pictures
+    from trunnion.report.pictures import warm_graphics
 
     warm_graphics()
-    palette, plan = load_palette(), None
-    while True:
-        try:
-            session, mesh, *file = pickle.load(sys.stdin.buffer)
-        except EOFError:
-            return
-        made: tuple[Picture, ...] = ()
+    artist = _Artist(load_palette())
+    # Nothing of a request is kept while the next one is waited for: sessions are large.
+    with suppress(EOFError):
+        while True:
+            made = artist.drawn(*pickle.load(sys.stdin.buffer))
+            pickle.dump(made, replies, protocol=pickle.HIGHEST_PROTOCOL)
+            replies.flush()
+
+
+class _Artist:
+    """Draws what requests ask for; the pictures of a plan are kept until they are asked for with their proof."""
+
+    def __init__(self, palette: Palette) -> None:
+        self._palette = palette
+        self._plan: tuple[DrawnPicture, ...] | None = None
+
+    def drawn(self, session: Session, mesh: Mesh, *file: Any) -> tuple[Picture, ...]:
+        """Return the pictures of a proven session in a file (folder, name, whether the plan is the kept one), or keep those of its plan."""
+        from trunnion.report.pictures import draw_plan, write_pictures
+
         # The caller draws again what fails here, and says why it can't.
         with suppress(TrunnionError, OSError):
             if file:
                 folder, name, same = file
-                kept = plan if same else None
-                made = write_pictures(session, mesh, folder, name, palette, plan=kept)
-            else:
-                plan = None
-                plan = draw_plan(session, mesh, palette)
-        pickle.dump(made, replies, protocol=pickle.HIGHEST_PROTOCOL)
-        replies.flush()
+                kept = self._plan if same else None
+                return write_pictures(session, mesh, folder, name, self._palette, plan=kept)
+            self._plan = None
+            self._plan = draw_plan(session, mesh, self._palette)
+        return ()
 
 
 if __name__ == "__main__":
