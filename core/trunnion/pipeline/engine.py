@@ -14,6 +14,7 @@ from trunnion.findings import BadCall, BadInput, Fix, has_errors
 from trunnion.geometry.cut import Cut
 from trunnion.geometry.kernels.compiling import compiling
 from trunnion.geometry.mesh import Mesh
+from trunnion.memory import trim_memory
 from trunnion.model.fixture import Fixture
 from trunnion.model.playback import Moment, Timeline
 from trunnion.model.repair import words_of
@@ -270,6 +271,7 @@ class Engine:
             share = progress.part(n / (last + 1), (n + 1) / (last + 1))
             share.at(0.0, step.title)
             session = run_step(session, step, self.context_of(session, share), share, STEPS)
+            trim_memory()
             if ahead is not None and step.name == _LAID:
                 ahead(session, self._picture_mesh(session, share))
         progress.at(1.0, "done")

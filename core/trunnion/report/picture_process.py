@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from trunnion.findings import TrunnionError
 from trunnion.geometry.mesh import Mesh
+from trunnion.memory import trim_memory
 from trunnion.model.session import Session
 from trunnion.progress import LOOK_S, NO_PROGRESS, Progress
 from trunnion.report.palette import Palette, load_palette
@@ -144,6 +145,7 @@ def main() -> None:
     with suppress(EOFError):
         while True:
             made = artist.drawn(*pickle.load(sys.stdin.buffer))
+            trim_memory()
             pickle.dump(made, replies, protocol=pickle.HIGHEST_PROTOCOL)
             replies.flush()
 

@@ -24,6 +24,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from trunnion.findings import BadInput, OutOfMemory, TrunnionError
 from trunnion.forks import Fork, copies
+from trunnion.memory import trim_memory
 from trunnion.part.read.limits import ReadLimits
 from trunnion.part.read.request import ReadRequest
 from trunnion.part.work import PartWork
@@ -36,6 +37,9 @@ _LOOK = 0.02
 _CHECK = 0.1
 _REFUSED, _NO_MEMORY = 3, 4
 _MEGA = 1 << 20
+_MAPPED = str(_MEGA)
+"""Bytes from which on glibc gives each array memory of its own, and back with it: else it keeps up to 32 MB in pieces (other systems don't
+read this)."""
 _PART = "result"
 
 
@@ -62,7 +66,7 @@ class ReadingProcess:
                 stdin=subprocess.PIPE if stays else subprocess.DEVNULL,
                 stdout=words,
                 stderr=words,
-                env=os.environ | {"PYTHONIOENCODING": "utf-8"},
+                env=os.environ | {"PYTHONIOENCODING": "utf-8", "MALLOC_MMAP_THRESHOLD_": _MAPPED},
             )
 
     def end(self) -> None:
@@ -177,6 +181,7 @@ def _work_on(data: bytes, directory: Path) -> None:
     # The part as the other process has it, so that both would make the same of it.
     part = Part.from_bytes(data)
     for number in count():
+        trim_memory()
         try:
             work: PartWork = pickle.load(sys.stdin.buffer)
         except EOFError:

@@ -12,6 +12,7 @@ from functools import partial
 from trunnion.findings import Finding, Severity
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
+from trunnion.memory import trim_memory
 from trunnion.model.blank import Blank
 from trunnion.model.material import Machine, Material
 from trunnion.model.motion.program import Program
@@ -125,6 +126,7 @@ def prove_surfaces(
         lambda _: stock_of(programs, blank, settings),
         "Filling the blank with rays",
     )
+    trim_memory()
     proofs = []
     for k, (program, side, machine) in enumerate(zip(programs, sides, machines, strict=False)):
         share = progress.part(
