@@ -143,6 +143,9 @@ class PathJobs:
         while len([c for c in self._copies if not c.is_done()]) >= copies():
             begun.progress.check()
             time.sleep(LOOK_S)
+        if begun.prepared is not None:
+            # All copies ask about the same part: its tree is built once, before them.
+            self._scene.context.make_ready(self._scene.setup, begun.prepared.driven.setup.frame)
         self._idle()
         copy = Fork(begun.make)
         self._copies.append(copy)

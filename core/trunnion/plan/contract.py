@@ -70,6 +70,9 @@ class PartContext(Protocol):
     ) -> ClearanceScene:
         """Return the clearance queries of a setup for a cutting frame, in which `skin` is the part's."""
 
+    def make_ready(self, setup: Setup, cutting: Frame) -> None:
+        """Build what the clearance queries of a cutting frame are answered by, where they were asked for."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class RouteJob:

@@ -65,6 +65,10 @@ class PartClearance:
         """Return the clearance query of a tool."""
         return ToolClearanceQuery(self, thickened(tool, tolerance.HOLDER_CLEARANCE))
 
+    def ready(self) -> None:
+        """Build what the first query would: a copy of this process has it then, and shares its memory."""
+        self._contact.ready(self.progress)
+
     def holds(self, axis: Floats) -> Bools:
         """Return which tool axes (k, 3), in the cutting frame, the machine can hold within the limits of its rotary axes."""
         from trunnion.verify.machine.kinematics import can_hold

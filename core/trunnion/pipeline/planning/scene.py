@@ -63,6 +63,12 @@ class SessionContext:
         self._around[key].progress = progress
         return self._around[key]
 
+    def make_ready(self, setup: Setup, cutting: Frame) -> None:
+        """Build what the clearance queries of a cutting frame are answered by, where they were asked for."""
+        around = self._around.get((setup.name, digest(cutting)))
+        if around is not None:
+            around.ready()
+
 
 @dataclass(slots=True, kw_only=True)
 class SetupScene:

@@ -80,6 +80,12 @@ class PartContact:
             )
         self._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
 
+    def ready(self, progress: Progress = NO_PROGRESS) -> None:
+        """Build the trees over triangles, which else the first question does."""
+        for engine in (self._every, self._free, self._fixtures):
+            if engine is not None:
+                engine.ready(progress)
+
     def along(self, moves: Moves, progress: Progress = NO_PROGRESS, threads: int = 0) -> Contact:
         """Return how deep every move of a program enters part and fixtures, measured on `threads` threads (0: one a core)."""
         found, rows = Penetration.none(len(moves), len(self.surfaces.tag)), np.arange(len(moves))

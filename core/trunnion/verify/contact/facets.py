@@ -140,7 +140,7 @@ class FacetContact:
         """Return the leading faces alone, made ready together with all."""
         return _LeadingContact(self)
 
-    def _ready(self, progress: Progress) -> FacetTree:
+    def ready(self, progress: Progress = NO_PROGRESS) -> FacetTree:
         """Return the tree, with looks at progress while it is built."""
         if "tree" not in self.__dict__:
             progress.aside(lambda _: self.tree)
@@ -173,7 +173,7 @@ class FacetContact:
 
         `obstacles` are the positions'; what stops a pose is added to them.
         """
-        tree, bodies, found = self._ready(progress), bodies_of_one(tool), np.zeros(len(tips), bool)
+        tree, bodies, found = self.ready(progress), bodies_of_one(tool), np.zeros(len(tips), bool)
 
         def some(first: int, last: int) -> None:
             pose_search.pose_search_loop(
@@ -204,7 +204,7 @@ class FacetContact:
     def _measure(
         self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf
     ) -> Penetration:
-        tree, bodies, k, f = self._ready(progress), moves.bodies, len(rows), len(self.facets.tag)
+        tree, bodies, k, f = self.ready(progress), moves.bodies, len(rows), len(self.facets.tag)
         bound = np.where(moves.turning(rows), tolerance.TURNING_BOUND, tolerance.CONTACT_BOUND)
         enough = np.full(k, settle) if np.isfinite(settle) else bound
         penetration = Penetration(
