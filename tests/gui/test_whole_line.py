@@ -7,49 +7,14 @@ from importlib.resources import as_file
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt, QTimer
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 import trunnion_resources
+from person import Person, wait_for_job
 from trunnion_gui.look.colours import kind_colour, rgb
 
 LEFT = Qt.MouseButton.LeftButton
-
-
-class Person:
-    """Somebody who uses the window: counts his clicks and the files he chooses, and how long the window's thread works at a stretch."""
-
-    def __init__(self, window):
-        self.window = window
-        self.interactions = 0
-        self.stretches = []
-        self._beat = QTimer(window)
-        self._beat.timeout.connect(self.looks)
-        self._worked = time.thread_time()
-        self._beat.start(5)
-
-    def looks(self):
-        now = time.thread_time()
-        self.stretches.append(now - self._worked)
-        self._worked = now
-
-    def chooses(self, path):
-        def choose():
-            self.interactions += 1
-            return str(path)
-
-        return choose
-
-    def clicks(self, widget, at=None):
-        self.interactions += 1
-        QTest.mouseClick(widget, LEFT, pos=at if at is not None else widget.rect().center())
-
-
-def wait_for_job(window, seconds):
-    end = time.monotonic() + seconds
-    while window.document.is_busy and time.monotonic() < end:
-        QTest.qWait(20)
-    assert not window.document.is_busy
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +38,7 @@ def programmed(tmp_path_factory, qapp):
         wait_for_job(window, 120.0)
         person.clicks(window.toolbar.widgetForAction(window.registry.action("run.program")))
         wait_for_job(window, 280.0)
-        person._beat.stop()
+        person.rests()
         gc_control.stop()
         yield person
         window.close()
