@@ -75,16 +75,9 @@ def prove_setup(
     """Return what is measured of one setup's program; `stock` is cut by it, `points` (s, 3) are the samples in its frame."""
     frame = program.setup.frame
     moves = progress.aside(lambda _: moves_of(program.sections), "Reading the moves")
-    sweep = progress.aside(lambda _: Sweep.of(moves, NEAR), "Making the moves ready for questions")
-    # Cutting a height field keeps one core at work, the contact with the part the others.
-    with progress.beside(
-        lambda own: run_stock(stock, moves, frame, sweep, own, settings.threads)
-    ) as cutting:
-        penetration = contact.along(moves, progress.part(0.02, 0.6), settings.threads)
-        progress.at(0.6, "Cutting the stock")
-        run = cutting()
-    deep = progress.aside(lambda _: stock.blank.depth(points, frame))
-    residual, nearest = sweep.residual(points, deep, progress.part(0.7, 0.98), settings.threads)
+    penetration, run, residual, nearest = _measured(
+        stock, contact, moves, frame, points, settings, progress
+    )
     positions, times = progress.aside(
         lambda _: _timed(moves, machine, foot_of(stock.blank, frame)), "Timing the moves"
     )
@@ -112,6 +105,32 @@ def prove_setup(
         nearest=nearest,
         collision_boxes=boxes,
     )
+
+
+def _measured(
+    stock: Stock,
+    contact: PartContact,
+    moves: Moves,
+    frame: Frame,
+    points: Floats,
+    settings: ProofSettings,
+    progress: Progress,
+) -> tuple[Contact, StockRun, Floats, Ints]:
+    """Return how moves meet the part and the stock, how much (s,) they leave at samples, and the move (s,) that comes nearest to each.
+
+    The sweep of the moves, as large as they are, is let go of with that.
+    """
+    sweep = progress.aside(lambda _: Sweep.of(moves, NEAR), "Making the moves ready for questions")
+    # Cutting a height field keeps one core at work, the contact with the part the others.
+    with progress.beside(
+        lambda own: run_stock(stock, moves, frame, sweep, own, settings.threads)
+    ) as cutting:
+        penetration = contact.along(moves, progress.part(0.02, 0.6), settings.threads)
+        progress.at(0.6, "Cutting the stock")
+        run = cutting()
+    deep = progress.aside(lambda _: stock.blank.depth(points, frame))
+    residual, nearest = sweep.residual(points, deep, progress.part(0.7, 0.98), settings.threads)
+    return penetration, run, residual, nearest
 
 
 def _timed(moves: Moves, machine: Machine, foot: Floats) -> tuple[AxisPositions, MachineTimes]:
