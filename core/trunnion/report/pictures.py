@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.feature import Recognition
 from trunnion.model.motion.toolpath import Toolpath
@@ -36,6 +36,7 @@ from trunnion.report.lines import (
     strokes,
 )
 from trunnion.report.palette import Colour, Palette
+from trunnion.report.points_in_view import seen_from
 from trunnion.settings import checked, choose
 from trunnion.verify.settings import ProofSettings
 
@@ -126,9 +127,13 @@ def draw_proof(
     if session.verdict is None or not len(session.verdict.deviation.face):
         return ()
     progress.at(0.0, "drawing the deviation")
-    data = _shoot(_deviation(session, mesh, palette, progress), progress)
-    caption = "Deviation of the finished part: + is material left, - is gouge"
-    return (DrawnPicture(subject="deviation", caption=caption, data=data),)
+    settings = checked(choose(ProofSettings, session.choices))
+    shown = deviation_map(
+        mesh, session.verdict.deviation, settings.tolerance, settings.allowance, progress
+    )
+    plotter, seen = _deviation(session, mesh, shown, palette, progress)
+    data = _shoot(plotter, progress)
+    return (DrawnPicture(subject="deviation", caption=deviation_caption(shown, seen), data=data),)
 
 
 def _plotter() -> Plotter:
@@ -288,12 +293,10 @@ def _segments(pieces: Iterable[Floats]) -> Any:
     return pyvista.PolyData(ends.reshape(-1, 3), lines=lines)
 
 
-def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progress) -> Plotter:
-    assert session.verdict is not None
-    settings = checked(choose(ProofSettings, session.choices))
-    shown = deviation_map(
-        mesh, session.verdict.deviation, settings.tolerance, settings.allowance, progress
-    )
+def _deviation(
+    session: Session, mesh: Mesh, shown: DeviationMap, palette: Palette, progress: Progress
+) -> tuple[Plotter, Bools]:
+    """Return the picture of a map, and which of its worst positions (k,) are seen and have their figure in it."""
     progress.check()
     plotter = _plotter()
     surface = _surface(shown.points, shown.triangles)
@@ -303,11 +306,14 @@ def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progres
     plotter.add_mesh(surface, scalars="colour", rgb=True, ambient=0.35, diffuse=0.7)
     _outline(plotter, _surface(mesh.points, mesh.triangles))
     _legend(plotter, deviation_legend(shown, palette))
+    _look(plotter, session)
     worst = shown.worst[:_NAMED_POINTS]
-    if worst:
+    points = np.array([w.point for w in worst]).reshape(-1, 3)
+    seen = seen_from(np.array(plotter.camera.position), points, mesh)
+    if seen.any():
         plotter.add_point_labels(
-            np.array([w.point for w in worst]),
-            [fine_length(w.deviation) for w in worst],
+            points[seen],
+            [fine_length(w.deviation) for w, there in zip(worst, seen, strict=True) if there],
             font_size=15,
             text_color="black",
             shape_color="white",
@@ -317,8 +323,19 @@ def _deviation(session: Session, mesh: Mesh, palette: Palette, progress: Progres
             always_visible=True,
             shape="rounded_rect",
             margin=4,
+            reset_camera=False,
         )
-    return _look(plotter, session)
+    return plotter, seen
+
+
+def deviation_caption(shown: DeviationMap, seen: Bools) -> str:
+    """Return the words under a deviation's picture: the worst positions, and which of them (k,) are on the far side."""
+    words = "Deviation of the finished part: + is material left, - is gouge"
+    worst = [
+        f"face {w.face} {fine_length(w.deviation)}" + ("" if there else " (not seen from here)")
+        for w, there in zip(shown.worst, seen, strict=False)
+    ]
+    return f"{words}; worst: {', '.join(worst)}" if worst else words
 
 
 def deviation_legend(shown: DeviationMap, palette: Palette) -> dict[str, Colour]:

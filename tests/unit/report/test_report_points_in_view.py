@@ -1,0 +1,68 @@
+"""What an eye sees of a part, and what a picture of deviations says of what it does not."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from trunnion.geometry.mesh import Mesh
+from trunnion.report.deviation import DeviationMap, WorstPoint
+from trunnion.report.pictures import deviation_caption
+from trunnion.report.points_in_view import seen_from
+
+CORNERS = np.array([[x, y, z] for x in (-5.0, 5.0) for y in (-5.0, 5.0) for z in (-5.0, 5.0)])
+SIDES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+NORMALS = np.array([[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]], float)
+
+
+def cubes(*offsets: tuple[float, float, float]) -> Mesh:
+    """Return cubes of 10 mm as one mesh."""
+    triangles = np.array([t for a, b, c, d in SIDES for t in ((a, b, c), (a, c, d))])
+    return Mesh(
+        np.vstack([CORNERS + np.array(at) for at in offsets]),
+        np.vstack([triangles + 8 * k for k in range(len(offsets))]),
+        np.tile(np.repeat(np.arange(1, 7), 2), len(offsets)),
+    )
+
+
+DIRECTION = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: max(map(abs, v)) > 0.1)
+INSIDE = st.floats(-4.0, 4.0)
+
+
+@given(direction=DIRECTION, side=st.integers(0, 5), u=INSIDE, v=INSIDE)
+def test_of_a_convex_body_those_points_are_seen_whose_faces_look_at_the_eye(direction, side, u, v):
+    eye = 60.0 * np.array(direction) / max(map(abs, direction))
+    normal = NORMALS[side]
+    point = 5.0 * normal + u * np.roll(np.abs(normal), 1) + v * np.roll(np.abs(normal), 2)
+    towards = float((eye - point) @ normal)
+    if abs(towards) > 1.0:
+        assert seen_from(eye, point[None], cubes((0.0, 0.0, 0.0)))[0] == (towards > 0.0)
+
+
+def test_what_stands_before_another_body_hides_it():
+    both = cubes((0.0, 0.0, 0.0), (30.0, 0.0, 0.0))
+    points = np.array([[25.0, 1.0, 2.0], [35.0, 1.0, 2.0], [30.0, 1.0, 5.0]])
+    assert seen_from(np.array([-200.0, 0.0, 0.0]), points, both).tolist() == [False, False, False]
+    assert seen_from(np.array([200.0, 0.0, 30.0]), points, both).tolist() == [False, True, True]
+    assert not len(seen_from(np.zeros(3), np.zeros((0, 3)), both))
+
+
+def test_the_caption_names_what_is_not_seen():
+    none = np.zeros((0, 3))
+    shown = DeviationMap(
+        points=none,
+        triangles=none.astype(int),
+        face=np.zeros(0, int),
+        value=np.zeros(0),
+        low=-0.02,
+        high=0.02,
+        limit=0.05,
+        worst=(
+            WorstPoint(face=3, point=(0.0, 0.0, 0.0), deviation=-0.05),
+            WorstPoint(face=81, point=(0.0, 0.0, 9.0), deviation=14.0),
+        ),
+    )
+    assert deviation_caption(shown, np.array([True, False])).endswith(
+        "worst: face 3 -50 µm, face 81 +14.00 mm (not seen from here)"
+    )
