@@ -9,6 +9,8 @@ from trunnion.geometry.mesh import Mesh
 
 SKIN = 0.1
 """mm before a point from where on something is in front of it: its own face, and what bends beside it, is not."""
+EDGE = 1e-9
+"""Of a triangle's sides: a line so near to one of them crosses it, so that none goes through between two triangles."""
 PARALLEL = 1e-12
 """Of a triangle's size: a line that crosses it no steeper goes along it."""
 
@@ -34,6 +36,7 @@ def seen_from(eye: Floats, points: Floats, mesh: Mesh) -> Bools:
         turned = np.cross(away, along)
         v = (turned @ line) * inverse
         at = (across * turned).sum(axis=1) * inverse
-        hit = crossed & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (at > SKIN) & (at < length)
+        inside = (u >= -EDGE) & (v >= -EDGE) & (u + v <= 1.0 + EDGE)
+        hit = crossed & inside & (at > SKIN) & (at < length)
         seen[k] = not hit.any()
     return seen

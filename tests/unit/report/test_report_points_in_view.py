@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from trunnion.geometry.mesh import Mesh
@@ -30,6 +30,8 @@ DIRECTION = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: max(map(abs,
 INSIDE = st.floats(-4.0, 4.0)
 
 
+@example(direction=(-1.0, 1.0, 1.0), side=1, u=-3.0, v=-3.0).via("between two triangles")
+@settings(deadline=None)
 @given(direction=DIRECTION, side=st.integers(0, 5), u=INSIDE, v=INSIDE)
 def test_of_a_convex_body_those_points_are_seen_whose_faces_look_at_the_eye(direction, side, u, v):
     eye = 60.0 * np.array(direction) / max(map(abs, direction))
