@@ -1,5 +1,6 @@
 """Free memory is given back to the system."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,8 @@ PIECE = 50_000
 
 def resident() -> int:
     """Return the bytes of memory that this process has of the system."""
-    return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1]) * 4096
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 @pytest.mark.skipif(_trim() is None, reason="this C library can't give memory back")
