@@ -141,6 +141,21 @@ def supports_of(tool):
     return found
 
 
+def joined_supports_of(tool):
+    """Return what `supports_of` does, with the corner of each joint where the outline bends outwards: a neighbour's side may be nearer."""
+    parts = supports_of(tool)
+    ends = [(rows[0][3], rows[-1][4]) for rows, *_ in parts]
+    for k in range(1, len(parts)):
+        (_, below), (above, _) = ends[k - 1], ends[k]
+        # A free face, which looks straight down or up, belongs to a step; the others meet at the radius that a line has at the joint.
+        if DOWN < below < above < -DOWN:
+            rows, low = parts[k][:2]
+            corner = (next(r for r, z, *_ in rows if z == low), low, 0.0, below, above)
+            for at in (k - 1, k):
+                parts[at] = ([*parts[at][0], corner], *parts[at][1:])
+    return parts
+
+
 DOWN = -math.pi / 2
 
 

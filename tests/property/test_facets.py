@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import Phase, given, settings
+from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
 from samples import block_with_pocket_shape, read
@@ -21,7 +21,7 @@ from trunnion.verify.contact.facets import FacetContact
 from trunnion.verify.kernels import body, tool_motion
 from trunnion.verify.kernels.contact import facets as kernel
 from trunnion.verify.motion import moves_of
-from verify_tools import FORMS, bull, flat, plain_depth, program_section, supports_of
+from verify_tools import FORMS, bull, flat, joined_supports_of, plain_depth, program_section
 
 DEEP = 1.0
 """mm: what the engine need not tell apart."""
@@ -171,13 +171,30 @@ TRIANGLES = st.lists(
 )
 
 
+LEAN = unit(np.array([0.3524537, 0.16609887, 0.92097098]))
+AT_A_JOINT = (
+    np.array([-4.78, 2.7, -5.94]),
+    np.array([-5.33372261, 2.43905027, -7.38689203]),
+    LEAN,
+    LEAN,
+    None,
+    0.0,
+)
+"""Ends with the edge of a holder, where its cone goes over into its cylinder, in a triangle: the cone is nearer than the cylinder."""
+
+
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
 @given(form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES)
+@example(
+    form="form",
+    move=AT_A_JOINT,
+    triangles=np.array([[[-13.68, -13.77, -4.11], [29.82, -5.67, 30.09], [29.52, 2.43, -4.11]]]),
+)
 def test_the_deepest_of_a_random_move_is_within_the_bound_of_a_far_finer_search(
     form, move, triangles
 ):
     tool, moves = FORMS[form], moves_for(FORMS[form], move)
-    parts = supports_of(tool)
+    parts = joined_supports_of(tool)
     touch = FacetContact(facets(triangles)).along(moves, np.array([1]), threads=1)
     bound = tolerance.TURNING_BOUND if moves.turning()[1] else tolerance.CONTACT_BOUND
     for kind in (0, 1):

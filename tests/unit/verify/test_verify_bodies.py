@@ -12,7 +12,7 @@ from trunnion import tolerance
 from trunnion.model.tool import Tool
 from trunnion.verify.cutter import OVERLAP, bodies_of, lowest_height, outline_of
 from trunnion.verify.kernels import body as kernel
-from verify_tools import FORMS, flat, plain_depth, supports_of, tool_of
+from verify_tools import FORMS, flat, joined_supports_of, plain_depth, supports_of, tool_of
 
 EVERY_FORM = pytest.mark.parametrize("tool", FORMS.values(), ids=FORMS)
 
@@ -75,6 +75,28 @@ def test_depths_agree_with_the_distance_to_every_line_that_touches_the_form(tool
             for r, z in zip(rho, h, strict=True)
         ]
         assert found == approx(plain_depth(part, rho, h, rise), abs=1e-9)
+
+
+@EVERY_FORM
+def test_a_closed_body_is_as_deep_as_the_nearest_side_of_the_tool_is_away(tool):
+    """Near a joint where the outline bends outwards, as where a holder's cone goes over into its cylinder, that may be its neighbour's."""
+    bodies, random = bodies_of([tool]), np.random.default_rng(5)
+    for part, piece in zip(joined_supports_of(tool), bodies.piece, strict=True):
+        rho, h = (
+            random.uniform(0.0, piece[kernel.R_MAX], 400),
+            random.uniform(part[1], part[2], 400),
+        )
+        true = plain_depth(part, rho, h)
+        found = depths(
+            bodies.arc,
+            piece[kernel.CLOSED_FIRST],
+            piece[kernel.CLOSED_LAST],
+            np.column_stack([rho, h]),
+        )
+        inside = true > 0.0
+        assert np.minimum(found, OVERLAP)[inside] == approx(
+            np.minimum(true, OVERLAP)[inside], abs=1e-9
+        )
 
 
 @EVERY_FORM
