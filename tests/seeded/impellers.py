@@ -203,8 +203,9 @@ def _sharp(seed: int) -> SeededImpeller:
     )
 
 
-def small_impeller() -> Any:
-    """Return the solid (OCP, mm) of a small open wheel that is quickly planned: six low blades with sharp roots, its axis z."""
+def small_impeller(*, holes: int = 0, diameter: float = 5.0) -> Any:
+    """Return the solid (OCP, mm) of a small open wheel that is quickly planned: six low blades with sharp roots, its axis z, and so many
+    blind holes of a diameter (mm) in its back."""
     radius, count = 20.0, 6
     height, outlet = 0.65 * radius, 0.14 * radius
     hub = _meridian((0.26 * radius, height), (0.28 * radius, 0.12 * height), (1.02 * radius, 0.0))
@@ -216,7 +217,8 @@ def small_impeller() -> Any:
     one = _blade(hub, shroud, 0.1, radians(30.0), 0.04 * radius, 1).intersect(envelope)
     wheel = body.fuse(*(one.rotate(*AXIS, 360.0 * k / count) for k in range(count)))
     bore = cq.Solid.makeCylinder(2.5, 4.0 * radius, cq.Vector(0, 0, -2.0 * radius))
-    return wheel.cut(bore).Solids()[0].wrapped
+    bolts = _bolts(holes, 0.62 * radius, 0.5 * diameter, -3.0)
+    return wheel.cut(bore, *bolts).Solids()[0].wrapped
 
 
 AXIS = (cq.Vector(0, 0, 0), cq.Vector(0, 0, 1))

@@ -11,8 +11,8 @@ from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.repair import words_of
 from trunnion.model.session import Session
 from trunnion.model.spindle import FeedMode, SpindleMode
-from trunnion.plan.flip import TURNED_OVER, turn_words
 from trunnion.plan.freeform.estimate.finishing_time import Estimate
+from trunnion.plan.setups.flip import TURNED_OVER, turn_words
 from trunnion.report.pictures import Picture
 from trunnion.units import degrees, timed
 from trunnion_resources import folder as resource_folder

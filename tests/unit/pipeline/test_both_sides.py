@@ -11,8 +11,8 @@ from pytest import approx
 from drilled_parts import box, cylinder, pointed, through
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import Engine
-from trunnion.plan.flip import TURNED_OVER
 from trunnion.plan.settings import HALVES
+from trunnion.plan.setups.flip import TURNED_OVER
 from trunnion.report.html import report_html
 from trunnion.tolerance import GOUGE
 

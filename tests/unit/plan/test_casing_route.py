@@ -16,8 +16,8 @@ from subjects import own, part_of, until
 from trunnion.geometry.turned_state import round_and_straight, turned_state
 from trunnion.model.feature import Feature
 from trunnion.pipeline import Engine
-from trunnion.plan.casing.hole_route import outward_direction
 from trunnion.plan.freeform.lands import LATERAL
+from trunnion.plan.holes.route import outward_direction
 from trunnion.plan.tool_choice import Candidates
 from trunnion.recognize.revolution import RevolutionAxis, of_revolution
 
@@ -160,10 +160,8 @@ def test_a_hole_that_no_drill_gets_at_for_what_stands_around_is_left_to_another_
     def hindered(*_):
         return Candidates(tools=(), reason="every drill would come too near", hindered=True)
 
-    monkeypatch.setattr("trunnion.plan.casing.hole_route.drills_for", hindered)
-    monkeypatch.setattr(
-        "trunnion.plan.casing.hole_route.mills_for", lambda *_: Candidates(tools=())
-    )
+    monkeypatch.setattr("trunnion.plan.holes.route.drills_for", hindered)
+    monkeypatch.setattr("trunnion.plan.holes.route.mills_for", lambda *_: Candidates(tools=()))
     engine, session = own("casing")
     found = engine.run(session, until="route")
     codes = {f.code for f in found.process.findings}

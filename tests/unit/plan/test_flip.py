@@ -12,7 +12,7 @@ from pytest import approx
 
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.setup import Setup
-from trunnion.plan.flip import turn_between, turn_words
+from trunnion.plan.setups.flip import turn_between, turn_words
 
 ORIGIN = np.zeros(3)
 

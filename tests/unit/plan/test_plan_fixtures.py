@@ -17,10 +17,10 @@ from trunnion.geometry.plane.region import Region
 from trunnion.model.blank import Box
 from trunnion.model.setup import Setup
 from trunnion.plan.freeform.fixtures import OffsetFixture, off_fixtures, with_fixtures
-from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.prismatic import fixtures
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.plan.setups import held
+from trunnion.plan.setups.frames import cutting_setup
 from trunnion.toolpath.motion.fixture_links import FixtureSurface
 from verify_tools import tool_of
 

@@ -32,11 +32,11 @@ from trunnion.plan.freeform.finishing.areas import (
     walls_of,
     with_joined_hollows,
 )
-from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.freeform.reach import reached, samples_on
 from trunnion.plan.freeform.roughing.heights import HeightMap, region_below
 from trunnion.plan.freeform.roughing.layers import level_faces
 from trunnion.plan.freeform.space import SurfaceSpace, skin_around
+from trunnion.plan.setups.frames import cutting_setup
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.views import StockViews
 

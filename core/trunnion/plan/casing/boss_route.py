@@ -18,7 +18,6 @@ from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.development.ground import SKIM, DevelopedGround
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.chord import chord_choices
-from trunnion.plan.freeform.frames import Direction
 from trunnion.plan.freeform.keys import ALLOWANCE, OVERHANG, SCALLOP
 from trunnion.plan.freeform.lands import (
     ABOVE_TOOL,
@@ -31,6 +30,7 @@ from trunnion.plan.freeform.lands import (
     lands_of,
 )
 from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.setups.frames import Direction
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.recognize.casing.kinds import ROOT_FILLET, SIDE, TOP
 from trunnion.settings import Value

@@ -23,11 +23,10 @@ from trunnion.plan.development.drives import (
     layers_over,
 )
 from trunnion.plan.development.ground import DevelopedGround
-from trunnion.plan.freeform.frames import cutting_setup
 from trunnion.plan.freeform.keys import number
 from trunnion.plan.freeform.lands import STOCK, land_drive
 from trunnion.plan.freeform.surface_drives import space_from, surface_driven
-from trunnion.plan.holes.drive import hole_drive
+from trunnion.plan.holes.drive import holes_driven
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.turning.gap_drive import GapDrive
 from trunnion.progress import Progress
@@ -190,15 +189,12 @@ CLEARANCE = 10.0
 """mm that rapids over bottoms stay above everything there."""
 
 
-def holes_driven(
+def bores_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
 ) -> OperationDrive:
-    """Return the drive of an operation on holes, seen along the operation's direction."""
-    setup = cutting_setup(scene.setup, operation.direction, scene.blank)
-    drive, findings = hole_drive(operation, scene.recognition, scene.process, setup.frame)
-    return OperationDrive(
-        setup=setup, drive=drive, identity=drive, findings=findings, cell=stock_cell(scene.blank)
-    )
+    """Return the drive of an operation on holes."""
+    driven = holes_driven(operation, needs, scene, progress)
+    return replace(driven, cell=stock_cell(scene.blank))
 
 
 def sides_driven(

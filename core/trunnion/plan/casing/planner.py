@@ -12,7 +12,7 @@ from trunnion.findings import Finding, Severity
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
-from trunnion.plan.casing.drives import gaps_driven, holes_driven, plane_driven, sides_driven
+from trunnion.plan.casing.drives import bores_driven, gaps_driven, plane_driven, sides_driven
 from trunnion.plan.casing.grounds import fine_mesh
 from trunnion.plan.casing.milling_settings import CasingRouteSettings
 from trunnion.plan.casing.plan_state import CasingPlanState
@@ -24,6 +24,7 @@ from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.feasibility import both_sides, refuse_open, too_large, without_axes
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.holes.drive import HoleDrive
+from trunnion.plan.holes.settings import DrillSettings, HoleSettings
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
@@ -57,6 +58,8 @@ class CasingPlanner:
         CasingRouteSettings,
         TurningSettings,
         RegionSettings,
+        HoleSettings,
+        DrillSettings,
     )
     cutter_rules: tuple[str, ...] = CUTTER_RULES
     skins: tuple[float, ...] = (tolerance.CHORD, tolerance.SKIN_CHORD)
@@ -120,6 +123,7 @@ class CasingPlanner:
             settings=job.settings_of(CasingRouteSettings),
             cutting=job.settings_of(CuttingSettings),
             regions=job.settings_of(RegionSettings),
+            choices=job.choices,
             progress=job.progress.part(0.2, 1.0),
             turned=turned,
             next=others[0] if others else None,
@@ -134,7 +138,7 @@ class CasingPlanner:
             {
                 PlaneDrive: plane_driven,
                 SurfaceDrive: sides_driven,
-                HoleDrive: holes_driven,
+                HoleDrive: bores_driven,
                 RevolvedDrive: revolved_driven,
                 GapDrive: gaps_driven,
             },

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 from trunnion.findings import face_tags, info, warning
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.model.setup import Setup
 from trunnion.plan.casing.boss_route import FILLET, SIDE_CUTTER, TOP_CUTTER, plan_boss
 from trunnion.plan.casing.bottom_route import (
     BOTTOM_CUTTER,
@@ -21,7 +19,6 @@ from trunnion.plan.casing.bottom_route import (
     plan_grounds,
     plan_layers,
 )
-from trunnion.plan.casing.hole_route import RULES, casing_holes, plan_holes
 from trunnion.plan.casing.interrupted_route import GAPS, plan_gaps
 from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.casing.recess.route import (
@@ -30,11 +27,10 @@ from trunnion.plan.casing.recess.route import (
     plan_recess,
     remaining_recesses,
 )
-from trunnion.plan.flip import turned
-from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.plan.holes.route import RULES, plan_holes, reached_holes
 from trunnion.plan.process import process_of
 from trunnion.plan.turning.operations import RULES as TURNING_RULES
-from trunnion.recognize.casing.kinds import BOSS, POCKET, PROFILE
+from trunnion.recognize.casing.kinds import BOSS, HOLE, POCKET, PROFILE
 from trunnion.shop import Stage, TypicalPlan
 
 CUTTER_RULES = (
@@ -60,7 +56,7 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
     state.progress = progress.part(0.0, 0.4)
     plan_grounds(state)
     state.progress = progress.part(0.4, 0.7)
-    holes = casing_holes(state)
+    holes = reached_holes(state, state.recognition.of_kind(HOLE))
     state.progress = progress.part(0.7, 1.0)
     for stage in state.progress.each([s for s in plan.stages if s.cutter not in TURNING_RULES]):
         if stage.cutter in (LAYERS, REST_LAYERS, BOTTOM_CUTTER, FOOT):
@@ -82,7 +78,7 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
                 plan_boss(state, stage, boss)
     state.findings.extend(remaining_recesses(state))
     _add_turned(state)
-    setups = _setups(state)
+    setups = state.used_setups(state.turned.setups if state.turned is not None else ())
     turned = state.turned.operations if state.turned is not None else ()
     return process_of(
         _in_order(
@@ -97,21 +93,6 @@ def make_casing_route(state: CasingPlanState, plan: TypicalPlan) -> ProcessTree:
         setups=setups,
         shop=state.shop,
     )
-
-
-def _setups(state: CasingPlanState) -> tuple[Setup, ...]:
-    """Return the setups that cut anything, or the first, and tell how the part is turned from one to the next."""
-    used = {o.setup for o in state.operations}
-    milling = [s for s in (state.setup, state.next) if s is not None and s.name in used]
-    before = state.turned.setups if state.turned is not None else ()
-    setups = (*before, *(milling or ([] if before else [state.setup])))
-    for first, second in pairwise(setups):
-        spaces = (
-            SetupSpace.of(state.part, state.recognition, s.begins_with(state.blank), s)
-            for s in (first, second)
-        )
-        state.findings.append(turned(*spaces))
-    return setups
 
 
 def _in_order(

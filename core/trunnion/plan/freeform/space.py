@@ -32,10 +32,10 @@ from trunnion.plan.freeform.fixtures import (
     off_fixtures,
     with_fixtures,
 )
-from trunnion.plan.freeform.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.plan.freeform.keys import ALLOWANCE, EXTENSION, OVERHANG, SCALLOP, number
 from trunnion.plan.prismatic.fixtures import Notice, kept_off
 from trunnion.plan.prismatic.keep_out import excluded
+from trunnion.plan.setups.frames import UPRIGHT, Direction, cutting_setup
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 

@@ -7,9 +7,9 @@ from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool, rotating
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
-from trunnion.plan.freeform.frames import Direction
 from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, UPRIGHT_EARLIER, number
 from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.setups.frames import Direction
 from trunnion.progress import Progress
 
 

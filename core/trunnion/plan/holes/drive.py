@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from trunnion.findings import Finding, Refused, face_tags, warning
+from trunnion.findings import Finding, Refused, error, face_tags, warning
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.operation import Operation
@@ -13,7 +13,10 @@ from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.holes.hole import Countersink, HoleShape, PlannedHole, hole_in, nearer_half
 from trunnion.plan.settings import HALVES
+from trunnion.plan.setups.frames import cutting_setup
+from trunnion.plan.tool_choice import Candidates
 from trunnion.progress import Progress
+from trunnion.shop import Stage
 
 NOT_REACHED = "hole.not-reached"
 """Code of the finding on a hole that the setup's tool axis does not reach."""
@@ -53,9 +56,11 @@ class HoleDrive:
 def holes_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
 ) -> OperationDrive:
-    """Return the drive of an operation on holes; those that can't be cut from the setup come out as findings."""
-    drive, findings = hole_drive(operation, scene.recognition, scene.process, scene.setup.frame)
-    return OperationDrive(setup=scene.setup, drive=drive, identity=drive, findings=findings)
+    """Return the drive of an operation on holes, seen along the operation's direction; those that can't be cut from there come out as
+    findings."""
+    setup = cutting_setup(scene.setup, operation.direction, scene.blank)
+    drive, findings = hole_drive(operation, scene.recognition, scene.process, setup.frame)
+    return OperationDrive(setup=setup, drive=drive, identity=drive, findings=findings)
 
 
 def hole_drive(
@@ -100,6 +105,21 @@ def not_reached(feature: Feature, reason: str) -> Finding:
         feature.id,
         *face_tags(feature.tags),
         remedy="machine it in another setup or by hand; the proof counts what is left",
+    )
+
+
+def no_tool(
+    stage: Stage, features: Sequence[Feature], faces: Iterable[int], missing: Candidates
+) -> Finding:
+    """Return the finding that no tool of the catalogue fits what a stage cuts of some holes: an error, but for flat floors a warning, for
+    over these drills leave their points."""
+    names = ", ".join(f.id for f in features)
+    return (warning if stage.kind == FLOOR else error)(
+        "route.no-cutter",
+        f"{names}: {missing.reason} ({stage.name})",
+        *(f.id for f in features),
+        *face_tags(faces),
+        remedy=missing.remedy,
     )
 
 

@@ -1,24 +1,32 @@
-"""The operations on the holes of a casing: along their own axes, one for all equal holes of one direction.
+"""The operations on the holes of a part: along their own axes, one for all equal holes of one direction.
 
-What the setup does not reach, such as the lower flange's bolt circle under the upper flange, is made with the part turned over.
+What the setup does not reach, such as the lower flange's bolt circle under a casing's upper flange, or the threads in a wheel's back, is
+made with the part turned over.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.findings import Refused, error, face_tags
+from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
 from trunnion.model.feature import Feature
-from trunnion.model.tool import Tool
-from trunnion.plan.casing.plan_state import CasingPlanState
-from trunnion.plan.freeform.frames import Direction, cutting_setup
 from trunnion.plan.holes.axis_clearance import SkinGroups
-from trunnion.plan.holes.drive import BORE, COUNTERBORE, COUNTERSINK, DRILL, not_reached
+from trunnion.plan.holes.cutting_data import hole_data
+from trunnion.plan.holes.drive import (
+    BORE,
+    COUNTERBORE,
+    COUNTERSINK,
+    DRILL,
+    FLOOR,
+    SPOT,
+    no_tool,
+    not_reached,
+)
 from trunnion.plan.holes.hole import (
     HoleShape,
     PlannedHole,
@@ -28,10 +36,11 @@ from trunnion.plan.holes.hole import (
     is_plain_through,
 )
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
-from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for, sinks_for
+from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_for, sinks_for
 from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.plan.setups.frames import Direction, cutting_setup
+from trunnion.plan.setups.state import SetupPlanState
 from trunnion.plan.tool_choice import Candidates
-from trunnion.recognize.casing.kinds import HOLE
 from trunnion.settings import choose
 from trunnion.shop import Stage
 from trunnion.units import trimmed
@@ -41,89 +50,106 @@ SAME_SIZE = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CasingHole:
-    """A hole seen along its own axis in the setup that makes it, with the drills for its bore, or the end mills where no drill fits."""
+class SetupHole:
+    """A hole seen along its own axis in the setup that makes it (`state`), with the drills for its bore, or the mills where no drill fits.
+
+    `breakthrough` is how far (mm) a tool goes on past the end of a through hole.
+    """
 
     feature: Feature
-    setup: str
+    state: SetupPlanState
     direction: Direction
     shape: HoleShape
     around: HoleSpace
     drills: Candidates
     mills: Candidates
+    settings: HoleSettings
+    breakthrough: float
+
+    def mills_for(self, part: PlannedHole) -> Candidates:
+        """Return the end mills that mill a part of the hole, gone down from its mouth."""
+        cutters = self.state.cutters("finish")
+        return mills_for(part, cutters, self.around, self.shape.bore.top, self.breakthrough)
 
 
-def casing_holes(state: CasingPlanState) -> tuple[CasingHole, ...]:
-    """Return the holes that are reached along their own axes, in the setup or with the part turned over; tell of the others."""
-    found = list[CasingHole]()
+def reached_holes(state: SetupPlanState, holes: Sequence[Feature]) -> tuple[SetupHole, ...]:
+    """Return those of some holes that are reached along their own axes, in the setup or with the part turned over; tell of the others."""
+    if not holes:
+        return ()
+    found = list[SetupHole]()
+    planning = _Planning(
+        groups=SkinGroups.of(state.context.skin(tolerance.CHORD, state.progress)),
+        settings=choose(HoleSettings, state.choices),
+        drilling=choose(DrillSettings, state.choices),
+    )
     other = state.turned_over()
-    spaces: dict[tuple[str, Direction], HoleSpace] = {}
-    groups = SkinGroups.of(state.context.skin(tolerance.CHORD, state.progress))
-    for feature in state.progress.each(state.recognition.of_kind(HOLE)):
+    for feature in state.progress.each(holes):
         try:
-            found.append(_reached(state, feature, spaces, groups))
+            found.append(planning.reached(state, feature))
         except Refused as reason:
             try:
                 if other is None:
                     raise
-                found.append(_reached(other, feature, spaces, groups))
+                found.append(planning.reached(other, feature))
             except Refused:
                 state.findings.append(not_reached(feature, str(reason)))
     return tuple(found)
 
 
-def _reached(
-    state: CasingPlanState,
-    feature: Feature,
-    spaces: dict[tuple[str, Direction], HoleSpace],
-    groups: SkinGroups,
-) -> CasingHole:
-    """Return a hole as the setup makes it; `spaces` keeps what stands along directions, of the triangles in `groups`.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Planning:
+    """What is known while it is looked at how holes are reached: the part's triangles in `groups`, and by setup and direction what stands
+    around holes there."""
 
-    Raises `Refused` where the part is in the way.
-    """
-    drilling, settings = choose(DrillSettings, {}), choose(HoleSettings, {})
-    direction = _outward(state, feature)
-    key = (state.setup.name, direction)
-    if key not in spaces:
-        setup = cutting_setup(state.setup, direction, state.blank)
-        spaces[key] = HoleSpace(
-            space=SetupSpace.of(state.part, state.recognition, state.blank, setup),
-            clearance=state.route.reach_clearance,
-            groups=groups,
+    groups: SkinGroups
+    settings: HoleSettings
+    drilling: DrillSettings
+    spaces: dict[tuple[str, Direction], HoleSpace] = field(default_factory=dict)
+
+    def reached(self, state: SetupPlanState, feature: Feature) -> SetupHole:
+        """Return a hole as a setup makes it; raise `Refused` where the part is in the way."""
+        direction = _outward(state, feature)
+        around = self._space(state, direction)
+        shape = hole_in(feature, state.recognition.frame, around.space.setup.frame)
+        if not around.is_open((shape.bore, *shape.counterbores)[-1]):
+            raise Refused(f"{feature.id}: the part covers its mouth")
+        hole = SetupHole(
+            feature=feature,
+            state=state,
+            direction=direction,
+            shape=shape,
+            around=around,
+            drills=drills_for(
+                shape.bore,
+                state.cutters("drill"),
+                around,
+                self.settings.diameter_tolerance,
+                self.drilling.breakthrough,
+            ),
+            mills=Candidates(tools=()),
+            settings=self.settings,
+            breakthrough=self.drilling.breakthrough,
         )
-    around = spaces[key]
-    shape = hole_in(feature, state.recognition.frame, around.space.setup.frame)
-    if not around.is_open((shape.bore, *shape.counterbores)[-1]):
-        raise Refused(f"{feature.id}: the part covers its mouth")
-    drills = drills_for(
-        shape.bore,
-        state.cutters("drill"),
-        around,
-        settings.diameter_tolerance,
-        drilling.breakthrough,
-    )
-    mills = (
-        Candidates(tools=())
-        if drills.tools
-        else mills_for(
-            shape.bore, state.cutters("finish"), around, shape.bore.top, drilling.breakthrough
-        )
-    )
-    if drills.hindered and not mills.tools:
-        raise Refused(f"{feature.id}: {drills.reason}")
-    return CasingHole(
-        feature=feature,
-        setup=state.setup.name,
-        direction=direction,
-        shape=shape,
-        around=around,
-        drills=drills,
-        mills=mills,
-    )
+        if hole.drills.tools:
+            return hole
+        hole = replace(hole, mills=hole.mills_for(shape.bore))
+        if hole.drills.hindered and not hole.mills.tools:
+            raise Refused(f"{feature.id}: {hole.drills.reason}")
+        return hole
+
+    def _space(self, state: SetupPlanState, direction: Direction) -> HoleSpace:
+        key = (state.setup.name, direction)
+        if key not in self.spaces:
+            setup = cutting_setup(state.setup, direction, state.blank)
+            self.spaces[key] = HoleSpace(
+                space=SetupSpace.of(state.part, state.recognition, state.blank, setup),
+                clearance=state.route.reach_clearance,
+                groups=self.groups,
+            )
+        return self.spaces[key]
 
 
-def _outward(state: CasingPlanState, feature: Feature) -> Direction:
+def _outward(state: SetupPlanState, feature: Feature) -> Direction:
     """Return the way out of a hole in the setup's frame; of a through hole along the axis the end that looks up."""
     world = state.recognition.frame.world_direction(outward_direction(feature))
     x, y, z = state.direction(world)
@@ -133,8 +159,8 @@ def _outward(state: CasingPlanState, feature: Feature) -> Direction:
 
 
 def outward_direction(feature: Feature) -> Floats:
-    """Return the unit direction (3,) in the casing's frame that a tool leaves a hole in: of a through hole that is as wide at both ends the
-    one away from the casing's axis, where nothing stands across from it."""
+    """Return the unit direction (3,) in the recognition's frame that a tool leaves a hole in: of a through hole as wide at both ends that
+    away from the frame's axis, where nothing stands across from it."""
     out = hole_direction(feature)
     if is_plain_through(feature):
         x, y, depth = (hole_size(feature, name) for name in ("x", "y", "depth"))
@@ -144,28 +170,21 @@ def outward_direction(feature: Feature) -> Floats:
     return out
 
 
-def plan_holes(state: CasingPlanState, stage: Stage, holes: Sequence[CasingHole]) -> None:
+def plan_holes(state: SetupPlanState, stage: Stage, holes: Sequence[SetupHole]) -> None:
     """Add the operations of a stage on holes: all equal ones of one direction that a tool fits together."""
     rule = RULES[stage.kind]
-    groups: dict[tuple[object, ...], list[tuple[CasingHole, PlannedHole, Candidates]]] = {}
+    groups: dict[tuple[object, ...], list[tuple[SetupHole, PlannedHole, Candidates]]] = {}
+    missing: dict[Candidates, list[tuple[SetupHole, PlannedHole]]] = {}
     for hole in holes:
-        made = rule(state, hole)
+        made = rule(hole)
         if made is None:
             continue
         part, found = made
         if not found.tools:
-            state.findings.append(
-                error(
-                    "route.no-cutter",
-                    f"{hole.feature.id}: {found.reason} ({stage.name})",
-                    hole.feature.id,
-                    *face_tags(part.faces),
-                    remedy=found.remedy,
-                )
-            )
+            missing.setdefault(found, []).append((hole, part))
             continue
         key = (
-            hole.setup,
+            hole.state.setup.name,
             tuple(round(v, 2 * SAME_SIZE) for v in hole.direction),
             round(part.diameter, SAME_SIZE),
             round(part.depth, SAME_SIZE),
@@ -173,17 +192,17 @@ def plan_holes(state: CasingPlanState, stage: Stage, holes: Sequence[CasingHole]
             found.tools[0].name,
         )
         groups.setdefault(key, []).append((hole, part, found))
+    state.findings += [
+        no_tool(stage, [h.feature for h, _ in these], (t for _, p in these for t in p.faces), found)
+        for found, these in missing.items()
+    ]
     for group in groups.values():
-        _add(state, stage, group)
+        _add(stage, group)
 
 
-def _add(
-    state: CasingPlanState,
-    stage: Stage,
-    group: Sequence[tuple[CasingHole, PlannedHole, Candidates]],
-) -> None:
+def _add(stage: Stage, group: Sequence[tuple[SetupHole, PlannedHole, Candidates]]) -> None:
     first, part, found = group[0]
-    tool: Tool = found.tools[0]
+    state, tool = first.state, found.tools[0]
     deepest = max(p.depth for _, p, _ in group)
     number = f"{len(group)} holes" if len(group) > 1 else "one hole"
     state.add(
@@ -191,52 +210,68 @@ def _add(
         first.feature.id,
         first.feature.id,
         tool,
-        depth=min(deepest, tool.flute_length),
-        width=part.diameter,
+        data=hole_data(stage.kind, tool, state.material, state.machine, state.shop, state.cutting),
         faces=tuple(t for _, p, _ in group for t in p.faces),
         why=f"{number} of D {trimmed(part.diameter, 3)}, {trimmed(deepest, 2)} mm deep: {tool.name} reaches their bottoms and "
         "keeps clear of what stands around them.",
         direction=first.direction,
         others=tuple(h.feature.id for h, _, _ in group[1:]),
-        setup=first.setup,
     )
 
 
 Made = tuple[PlannedHole, Candidates] | None
 
 
-def _drilled(state: CasingPlanState, hole: CasingHole) -> Made:
-    if hole.mills.tools:
+def _spotted(hole: SetupHole) -> Made:
+    """Return a hole to be drilled with the spotting drills, the widest first: its cone says how wide the spot is."""
+    if not hole.settings.spot or not hole.drills.tools:
         return None
-    return hole.shape.bore, hole.drills
+    drills = sorted(hole.state.cutters("spot"), key=lambda t: (-t.diameter, t.name))
+    return replace(hole.shape.bore, faces=()), Candidates(
+        tools=tuple(drills),
+        reason="the catalogue has no spotting drill for this material",
+        remedy="add one to the tools folder",
+    )
 
 
-def _milled(state: CasingPlanState, hole: CasingHole) -> Made:
+def _drilled(hole: SetupHole) -> Made:
+    return None if hole.mills.tools else (hole.shape.bore, either(hole.drills, hole.mills))
+
+
+def _milled(hole: SetupHole) -> Made:
     return (hole.shape.bore, hole.mills) if hole.mills.tools else None
 
 
-def _counterbored(state: CasingPlanState, hole: CasingHole) -> Made:
+def _floored(hole: SetupHole) -> Made:
+    """Return the flat floor that a drill has left its point over."""
+    bore = hole.shape.bore
+    if not bore.is_flat or not hole.drills.tools:
+        return None
+    return replace(bore, faces=hole.feature.with_role("bottom")), hole.mills_for(bore)
+
+
+def _counterbored(hole: SetupHole) -> Made:
+    """Return the deepest step: what gets down to it mills the others too."""
     if not hole.shape.counterbores:
         return None
-    drilling, part = choose(DrillSettings, {}), hole.shape.counterbores[0]
-    found = mills_for(
-        part, state.cutters("finish"), hole.around, hole.shape.bore.top, drilling.breakthrough
-    )
-    return part, found
+    part = hole.shape.counterbores[0]
+    return part, hole.mills_for(part)
 
 
-def _sunk(state: CasingPlanState, hole: CasingHole) -> Made:
+def _sunk(hole: SetupHole) -> Made:
     sink = hole.shape.countersink
     if sink is None:
         return None
-    found = sinks_for(hole.shape.bore, sink, state.cutters("countersink"), hole.around)
+    found = sinks_for(hole.shape.bore, sink, hole.state.cutters("countersink"), hole.around)
     faces = hole.feature.with_role("countersink")
     return replace(hole.shape.bore, diameter=sink.diameter, faces=faces), found
 
 
-RULES: dict[str, Callable[[CasingPlanState, CasingHole], Made]] = {
+RULES: dict[str, Callable[[SetupHole], Made]] = {
+    SPOT: _spotted,
     DRILL: _drilled,
     BORE: _milled,
+    FLOOR: _floored,
     COUNTERBORE: _counterbored,
     COUNTERSINK: _sunk,
 }

@@ -213,6 +213,17 @@ def mills_for(
     )
 
 
+def either(drills: Candidates, mills: Candidates) -> Candidates:
+    """Return the drills of a hole, or why neither a drill nor an end mill fits it."""
+    if drills.tools or not mills.reason:
+        return drills
+    return Candidates(
+        tools=(),
+        reason=f"{drills.reason}; {mills.reason}",
+        remedy=f"{drills.remedy}, or {mills.remedy}",
+    )
+
+
 def sinks_for(
     hole: PlannedHole, sink: Countersink, tools: Sequence[Tool], around: HoleSpace
 ) -> Candidates:

@@ -12,16 +12,20 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
-from trunnion.plan.feasibility import refuse_open, too_large, without_axes
+from trunnion.plan.cutting.milling import CuttingSettings
+from trunnion.plan.feasibility import both_sides, refuse_open, too_large, without_axes
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
+from trunnion.plan.holes.settings import DrillSettings, HoleSettings
+from trunnion.plan.impeller.cutters import sizes_of
 from trunnion.plan.impeller.drives import channel_driven
-from trunnion.plan.impeller.route import CUTTER_RULES, make_impeller_route
+from trunnion.plan.impeller.route import CUTTER_RULES, ImpellerPlanState, make_impeller_route
 from trunnion.plan.impeller.settings import ImpellerRouteSettings
 from trunnion.plan.impeller.wheel import wheel_of
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
+from trunnion.plan.setups import SetupSettings
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
 
@@ -35,10 +39,15 @@ LEAN = 60.0
 
 
 class ImpellerPlanner:
-    """Plans the channels of one period of a wheel; what is turned before is told."""
+    """Plans the channels of one period of a wheel and the holes beside its bore; what is turned before is told."""
 
     name, noun = "impeller", "impellers"
-    settings: tuple[type, ...] = (RouteSettings, ImpellerRouteSettings)
+    settings: tuple[type, ...] = (
+        RouteSettings,
+        ImpellerRouteSettings,
+        HoleSettings,
+        DrillSettings,
+    )
     cutter_rules: tuple[str, ...] = CUTTER_RULES
     skins: tuple[float, ...] = (tolerance.CHORD,)
     lean = math.radians(LEAN)
@@ -49,7 +58,9 @@ class ImpellerPlanner:
 
     def route(self, job: RouteJob) -> ProcessTree:
         """Return the process by `make_impeller_route`, or why the blank fits no machine."""
-        route = job.settings_of(RouteSettings)
+        route, cutting = job.settings_of(RouteSettings), job.settings_of(CuttingSettings)
+        plan = typical_plan(job.shop, job.recognition.family, route.plan, CUTTER_RULES)
+        material = job.shop.material(job.blank.material)
         job.progress.at(0.0, "looking at the wheel")
         findings = too_large(job.blank, job.setups, job.shop) or without_axes(
             job.recognition, job.setups, job.shop, NEEDS_AXES
@@ -62,21 +73,29 @@ class ImpellerPlanner:
             except Refused as reason:
                 findings = [_not_planned(job, str(reason), "correct the features")]
         if findings:
-            plan = typical_plan(job.shop, job.recognition.family, route.plan, CUTTER_RULES)
-            material = job.shop.material(job.blank.material)
             return process_of(
                 (), findings, plan=plan, material=material, setups=job.setups, shop=job.shop
             )
-        return make_impeller_route(
-            job.recognition,
-            wheel,
-            skin,
-            job.blank,
-            job.setups,
-            job.shop,
-            route,
-            job.settings_of(ImpellerRouteSettings),
+        setup, *others = both_sides(job.setups, job.blank, job.shop, job.settings_of(SetupSettings))
+        state = ImpellerPlanState(
+            part=job.context.part,
+            context=job.context,
+            recognition=job.recognition,
+            blank=job.blank,
+            setup=setup,
+            material=material,
+            machine=job.shop.machine(setup.machine),
+            shop=job.shop,
+            route=route,
+            cutting=cutting,
+            choices=job.choices,
+            progress=job.progress,
+            next=others[0] if others else None,
+            wheel=wheel,
+            sizes=sizes_of(wheel, skin),
+            settings=job.settings_of(ImpellerRouteSettings),
         )
+        return make_impeller_route(state, plan)
 
     def drive(
         self, operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress

@@ -1,47 +1,42 @@
-"""The route of an impeller: channels roughed, blades and splitters finished from tip to root, the hub, the root fillets."""
+"""The route of an impeller: channels roughed, blades and splitters finished from tip to root, the hub, the root fillets, holes beside the
+bore."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from trunnion.findings import Finding, error, face_tags, info
-from trunnion.geometry.sheet.skin import Skin
-from trunnion.model.blank import Blank
-from trunnion.model.feature import Recognition
-from trunnion.model.material import Machine, Material
 from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
-from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.milling import (
-    CuttingSettings,
     cutting_data,
     roughing_depth,
 )
 from trunnion.plan.freeform.cutters.choice import named
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
+from trunnion.plan.holes.route import RULES as HOLE_RULES
+from trunnion.plan.holes.route import plan_holes, reached_holes
 from trunnion.plan.impeller.cutters import (
     WheelSizes,
     in_fillet,
     in_wide_parts,
     on_hub,
     on_walls,
-    sizes_of,
     through_channel,
 )
 from trunnion.plan.impeller.settings import ImpellerRouteSettings
-from trunnion.plan.impeller.wheel import BLADE, EDGES, HUB, ROOT, SPLITTER, WALLS, Wheel
+from trunnion.plan.impeller.wheel import BLADE, EDGES, HOLE, HUB, ROOT, SPLITTER, WALLS, Wheel
 from trunnion.plan.process import process_of
-from trunnion.plan.settings import RouteSettings
-from trunnion.plan.typical import typical_plan
-from trunnion.settings import Value, choose
-from trunnion.shop import Shop, Stage, TypicalPlan
+from trunnion.plan.setups.state import SetupPlanState
+from trunnion.settings import Value
+from trunnion.shop import Stage, TypicalPlan
 from trunnion.units import trimmed
 
 WIDE, CHANNEL, WALL, HUB_CUTTER, FILLET = "wide", "channel", "walls", "hub", "fillet"
-CUTTER_RULES = (WIDE, CHANNEL, WALL, HUB_CUTTER, FILLET)
+CUTTER_RULES = (WIDE, CHANNEL, WALL, HUB_CUTTER, FILLET, *HOLE_RULES)
 """Words that a typical plan may give for a stage's cutter."""
 ROLES = {WALL: (*WALLS, *EDGES), FILLET: ROOT}
 """Roles of the faces that a stage finishes, by its rule for the cutter."""
@@ -53,20 +48,13 @@ LEFT = 2.0
 """Times the roughing allowance: how deep finishing cuts at most, where walls twist away from the tool that roughed along them."""
 
 
-@dataclass(slots=True)
-class ImpellerPlanState:
+@dataclass(slots=True, kw_only=True)
+class ImpellerPlanState(SetupPlanState):
     """What is known while an impeller is planned, and the operations so far."""
 
-    recognition: Recognition
     wheel: Wheel
     sizes: WheelSizes
-    setup: Setup
-    material: Material
-    machine: Machine
-    shop: Shop
     settings: ImpellerRouteSettings
-    operations: list[Operation] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
 
     def cutter(self, rule: str) -> Tool | None:
         """Return the cutter of a stage by its rule, the one that a person named before all others."""
@@ -94,46 +82,31 @@ class ImpellerPlanState:
 
     def rough_data(self, tool: Tool) -> CuttingData:
         """Return the cutting data of a cutter that roughs channels."""
-        s, cutting = self.settings, choose(CuttingSettings, {})
-        bears = roughing_depth(tool, self.material, cutting)
+        s = self.settings
+        bears = roughing_depth(tool, self.material, self.cutting)
         depth = min(bears, s.layer) if s.layer > 0.0 else bears
         return cutting_data(
-            tool, self.material, self.machine, ROUGH, cutting, depth, WIDTH * tool.diameter
+            tool, self.material, self.machine, ROUGH, self.cutting, depth, WIDTH * tool.diameter
         )
 
 
-def make_impeller_route(
-    recognition: Recognition,
-    wheel: Wheel,
-    skin: Skin,
-    blank: Blank,
-    setups: Sequence[Setup],
-    shop: Shop,
-    route: RouteSettings,
-    settings: ImpellerRouteSettings,
-) -> ProcessTree:
-    """Return the process of an impeller; `skin` lies in the rotor's frame. What is not planned is in its findings."""
-    plan = typical_plan(shop, recognition.family, route.plan, CUTTER_RULES)
-    state = ImpellerPlanState(
-        recognition=recognition,
-        wheel=wheel,
-        sizes=sizes_of(wheel, skin),
-        setup=setups[0],
-        material=shop.material(blank.material),
-        machine=shop.machine(setups[0].machine),
-        shop=shop,
-        settings=settings,
-    )
+def make_impeller_route(state: ImpellerPlanState, plan: TypicalPlan) -> ProcessTree:
+    """Return the process of an impeller: operations in cutting order; what is not planned is in its findings."""
+    holes = reached_holes(state, state.recognition.of_kind(HOLE))
     for stage in plan.stages:
-        _plan_stage(state, stage)
+        if stage.cutter in HOLE_RULES:
+            plan_holes(state, stage, holes)
+        else:
+            _plan_stage(state, stage)
     _add_turned(state)
+    setups = state.used_setups()
     return process_of(
-        _in_order(state.operations, plan),
+        _in_order(state.operations, plan, [s.name for s in setups]),
         state.findings,
         plan=plan,
         material=state.material,
         setups=setups,
-        shop=shop,
+        shop=state.shop,
     )
 
 
@@ -166,13 +139,15 @@ def _add(
     tool: Tool,
     tags: tuple[int, ...],
 ) -> None:
-    s, cutting = state.settings, choose(CuttingSettings, {})
+    s = state.settings
     choices: dict[str, Value]
     if stage.finish:
         height = s.height()
         depth = LEFT * s.rough_allowance
         width = stepover_on_plane(tool.corner_radius, height)
-        data = cutting_data(tool, state.material, state.machine, stage.kind, cutting, depth, width)
+        data = cutting_data(
+            tool, state.material, state.machine, stage.kind, state.cutting, depth, width
+        )
         choices = {SCALLOP: height, ALLOWANCE: 0.0}
         why = f"{tool.name}: scallops of {trimmed(1000.0 * height, 1)} um, {trimmed(width, 3)} mm between passes on a plane."
     else:
@@ -211,22 +186,24 @@ def _add(
     )
 
 
-def _in_order(operations: Sequence[Operation], plan: TypicalPlan) -> list[Operation]:
-    """Return the operations, which stand in the order of the plan's stages, with what comes before each."""
+def _in_order(
+    operations: Sequence[Operation], plan: TypicalPlan, setups: Sequence[str]
+) -> list[Operation]:
+    """Return the operations, which stand in the order of the plan's stages, setup by setup with what comes before each."""
     before = {s.name: set(s.after_all) | set(s.after) for s in plan.stages}
     return [
         replace(
             o,
             after=tuple(sorted(other.id for other in operations if other.group in before[o.group])),
         )
-        for o in operations
+        for o in sorted(operations, key=lambda o: setups.index(o.setup))
     ]
 
 
 def _add_turned(state: ImpellerPlanState) -> None:
     """Tell of the features that no operation cuts: what is turned, or bored, before the channels are milled."""
     cut = {t for o in state.operations for t in o.faces}
-    others = [f for f in state.recognition if f.kind not in (BLADE, SPLITTER, HUB)]
+    others = [f for f in state.recognition if f.kind not in (BLADE, SPLITTER, HUB, HOLE)]
     left = [f for f in others if not set(f.tags) & cut]
     if left:
         state.findings.append(

@@ -17,7 +17,7 @@ from trunnion.plan.channel.blade_channel import BladeChannel, Camber, camber_of,
 from trunnion.plan.channel.meridian import MeridianSpline, WheelMeridian, cylindrical
 from trunnion.progress import NO_PROGRESS, Progress
 
-BLADE, SPLITTER, HUB = "blade", "splitter", "hub"
+BLADE, SPLITTER, HUB, HOLE = "blade", "splitter", "hub", "hole"
 WALLS, EDGES, TIP, ROOT = (
     ("pressure", "suction"),
     ("leading_edge",),

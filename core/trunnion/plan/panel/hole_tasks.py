@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from trunnion.findings import Finding, Refused, error, face_tags, warning
+from trunnion.findings import Refused
 from trunnion.geometry.plane.region import EMPTY_REGION
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
-from trunnion.plan.holes.drive import not_reached
+from trunnion.plan.holes.drive import no_tool, not_reached
 from trunnion.plan.holes.hole import (
     HoleShape,
     PlannedHole,
@@ -18,7 +18,7 @@ from trunnion.plan.holes.hole import (
     nearer_half,
 )
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
-from trunnion.plan.holes.tools import HoleSpace, drills_for, mills_for, sinks_for
+from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_for, sinks_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
 from trunnion.settings import choose
@@ -182,24 +182,15 @@ def _drill_tasks(
     # A hole without a drill is milled where an end mill gets into it; where none does, both reasons are told.
     fitted = [
         HoleFit(
-            feature=f, hole=shape.bore, found=_either(known.drills[f.id], known.mills.get(f.id))
+            feature=f,
+            hole=shape.bore,
+            found=either(known.drills[f.id], known.mills.get(f.id, Candidates(tools=()))),
         )
         for f, shape in _bored_here(state, known, stage, features)
         if known.drills[f.id].tools or not known.mills[f.id].tools
     ]
     return _tasks(
         state, stage, fitted, lambda hole: (*_size(hole), _deep_class(hole, known.drilling)), _own
-    )
-
-
-def _either(drills: Candidates, mills: Candidates | None) -> Candidates:
-    """Return the drills of a hole, or why neither a drill nor an end mill fits it."""
-    if drills.tools or mills is None:
-        return drills
-    return Candidates(
-        tools=(),
-        reason=f"{drills.reason}; {mills.reason}",
-        remedy=f"{drills.remedy}, or {mills.remedy}",
     )
 
 
@@ -230,7 +221,7 @@ def _floor_tasks(
         for f, shape in _bored_here(state, known, stage, features)
         if shape.bore.is_flat and known.drills[f.id].tools
     ]
-    return _tasks(state, stage, fitted, _size, _own, no_floor_tool)
+    return _tasks(state, stage, fitted, _size, _own)
 
 
 def _counterbore_tasks(
@@ -309,20 +300,19 @@ def _tasks(
     fitted: Iterable[HoleFit],
     size_of: Callable[[PlannedHole], tuple[object, ...]],
     faces_of: Callable[[HoleFit], tuple[int, ...]],
-    report: Callable[[Stage, Sequence[HoleFit], str, str], Finding] | None = None,
 ) -> list[OperationTask]:
     """Return a task for all holes of one size that one tool serves; holes that no tool fits become findings, one for each reason."""
     groups: dict[tuple[bool, *tuple[object, ...]], list[HoleFit]] = {}
-    missing: dict[tuple[str, str], list[HoleFit]] = {}
+    missing: dict[Candidates, list[HoleFit]] = {}
     for one in fitted:
         if one.found.tools:
             is_half = one.feature.id in state.halved
             groups.setdefault((is_half, *size_of(one.hole)), []).append(one)
         else:
-            missing.setdefault((one.found.reason, one.found.remedy), []).append(one)
+            missing.setdefault(one.found, []).append(one)
     state.findings += [
-        (report or no_tool)(stage, holes, reason, remedy)
-        for (reason, remedy), holes in missing.items()
+        no_tool(stage, [h.feature for h in holes], (t for h in holes for t in faces_of(h)), found)
+        for found, holes in missing.items()
     ]
     return [
         _task(state, stage, holes, tools, faces_of)
@@ -371,24 +361,6 @@ def _task(
         why=f"{number} of D {trimmed(hole.diameter, 3)}, up to {trimmed(deepest, 2)} mm deep: it reaches their bottoms, and "
         "shank and holder keep clear of what stands around them.",
     )
-
-
-def no_tool(stage: Stage, holes: Sequence[HoleFit], reason: str, remedy: str) -> Finding:
-    """Return the error that no tool of the catalogue fits some holes."""
-    names = ", ".join(h.feature.id for h in holes)
-    return error(
-        "route.no-cutter",
-        f"{names}: {reason} ({stage.name})",
-        *(h.feature.id for h in holes),
-        *face_tags(tag for h in holes for tag in h.hole.faces),
-        remedy=remedy,
-    )
-
-
-def no_floor_tool(stage: Stage, holes: Sequence[HoleFit], reason: str, remedy: str) -> Finding:
-    """Return the warning that drills' points stay in flat holes: no end mill fits these."""
-    found = no_tool(stage, holes, reason, remedy)
-    return warning(found.code, found.text, *found.where, remedy=found.remedy)
 
 
 HOLE_TASK_MAKERS: Mapping[

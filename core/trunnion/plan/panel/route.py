@@ -14,7 +14,6 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.drilling import AXIAL, drilling_data
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
@@ -22,11 +21,9 @@ from trunnion.plan.cutting.milling import (
     roughing_depth,
     roughing_width,
 )
-from trunnion.plan.cutting.power import DRILL
 from trunnion.plan.feasibility import both_sides, too_large
-from trunnion.plan.flip import turned
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
+from trunnion.plan.holes.cutting_data import hole_data, is_on_holes
 from trunnion.plan.panel.fallbacks import (
     behind_rest_roughing,
     best_fit,
@@ -57,6 +54,7 @@ from trunnion.plan.process import process_of
 from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.settings import HALVES, RouteSettings
 from trunnion.plan.setups import SetupSettings
+from trunnion.plan.setups.flip import turned
 from trunnion.plan.tool_choice import covered_by_few, depth_reached
 from trunnion.plan.typical import typical_plan
 from trunnion.progress import Progress
@@ -72,10 +70,6 @@ FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
 
 LAYERED = ("rough", "profile_rough")
 """Kinds of operations in layers by contour-parallel passes: they slow down in the slots that open a layer, or come from outside."""
-HOLE_MILLING = (BORE, FLOOR, COUNTERBORE)
-"""Kinds of operations that mill holes along helices."""
-HELIX_DEPTH = 0.2
-"""Depth of one turn of a helix in a hole over the cutter's diameter: the first ring cuts all of its width."""
 
 
 def make_route(
@@ -270,9 +264,8 @@ def _data(
     state: PanelPlanState, task: OperationTask, tool: Tool, cutting: CuttingSettings
 ) -> CuttingData:
     """Return the cutting data that an operation begins with."""
-    if task.stage.kind in AXIAL or tool.form == DRILL:
-        table = state.shop.drilling_for(state.material)
-        return drilling_data(tool, state.material, table, state.machine, cutting, task.stage.kind)
+    if is_on_holes(task.stage.kind, tool):
+        return hole_data(task.stage.kind, tool, state.material, state.machine, state.shop, cutting)
     depth, width = _engagement(state, task, tool, cutting)
     return cutting_data(
         tool,
@@ -308,9 +301,6 @@ def _engagement(
         return _even(
             task.height, min(tool.flank_step(task.height), WALL_STEP * tool.diameter)
         ), max(allowance, tolerance.SEW)
-    if kind in HOLE_MILLING:
-        # Each turn of the helix takes a slice, ring by ring from the middle outwards.
-        return HELIX_DEPTH * tool.diameter, rough_width
     if kind == "foot":
         return task.height, task.height
     if kind in ("rib_top", "island_top"):

@@ -16,8 +16,8 @@ from trunnion.model.keep_out import KeepOutBox
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import ToolAxis
-from trunnion.plan.freeform.frames import cutting_frame
 from trunnion.plan.repair.contract import RepairJob
+from trunnion.plan.setups.frames import cutting_frame
 from trunnion.registry import STRATEGIES
 from trunnion.settings import choose
 

@@ -13,9 +13,9 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
-from trunnion.plan.freeform.frames import UPRIGHT, Direction
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.settings import RouteSettings
+from trunnion.plan.setups.frames import UPRIGHT, Direction
 from trunnion.plan.surface.settings import SurfaceRouteSettings
 from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage

@@ -25,8 +25,8 @@ from trunnion.plan.casing.plan_state import CasingPlanState
 from trunnion.plan.casing.recess.walls import LEANING, RecessWalls, WallGroup, recess_walls
 from trunnion.plan.development.ground import SKIM, DevelopedGround
 from trunnion.plan.freeform.finishing.chord import chord_choices
-from trunnion.plan.freeform.frames import Direction
 from trunnion.plan.freeform.keys import ALLOWANCE, OVERHANG, SCALLOP
+from trunnion.plan.setups.frames import Direction
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.recognize.casing.kinds import BOTTOM
 from trunnion.settings import Value

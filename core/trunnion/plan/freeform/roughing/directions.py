@@ -13,9 +13,9 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
-from trunnion.plan.freeform.frames import Direction
 from trunnion.plan.freeform.reach import AreaSamples, reached
 from trunnion.plan.freeform.space import SurfaceSpace
+from trunnion.plan.setups.frames import Direction
 from trunnion.progress import Progress
 
 TILTS = (math.radians(90.0), math.radians(60.0), math.radians(30.0))

@@ -1,0 +1,38 @@
+"""The cutting data that operations on holes begin with: drilled by the drilling table, milled by helices."""
+
+from __future__ import annotations
+
+from trunnion.model.material import Machine, Material
+from trunnion.model.operation import CuttingData
+from trunnion.model.tool import Tool
+from trunnion.plan.cutting.drilling import AXIAL, drilling_data
+from trunnion.plan.cutting.milling import CuttingSettings, cutting_data, roughing_width
+from trunnion.plan.cutting.power import DRILL
+from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
+from trunnion.shop import Shop
+
+HOLE_MILLING = (BORE, FLOOR, COUNTERBORE)
+"""Kinds of operations that mill holes along helices."""
+HELIX_DEPTH = 0.2
+"""Depth of one turn of a helix in a hole over the cutter's diameter: the first ring cuts all of its width."""
+
+
+def is_on_holes(kind: str, tool: Tool) -> bool:
+    """Return whether the data of an operation of a kind are those of `hole_data`."""
+    return kind in (*AXIAL, *HOLE_MILLING) or tool.form == DRILL
+
+
+def hole_data(
+    kind: str,
+    tool: Tool,
+    material: Material,
+    machine: Machine,
+    shop: Shop,
+    settings: CuttingSettings,
+) -> CuttingData:
+    """Return the data of an operation of a kind on holes: each turn of a helix takes a slice, ring by ring from the middle outwards."""
+    if kind in AXIAL or tool.form == DRILL:
+        table = shop.drilling_for(material)
+        return drilling_data(tool, material, table, machine, settings, kind)
+    depth, width = HELIX_DEPTH * tool.diameter, roughing_width(tool, material, settings)
+    return cutting_data(tool, material, machine, kind, settings, depth, width)
