@@ -461,7 +461,7 @@ def proof(
     machine=MACHINE,
     material=None,
     setup=SETUP,
-    facets=(),
+    facets=None,
     **choices,
 ):
     """Return the verdict on sections that cut the block."""

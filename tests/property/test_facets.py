@@ -11,13 +11,14 @@ from hypothesis import strategies as st
 
 from samples import block_with_pocket_shape, read
 from trunnion import tolerance
-from trunnion.geometry.frame import WORLD
+from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.motion.program import ProgramSection
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.part.shape.facets import Facets, facets_of
 from trunnion.part.shape.surfaces import surfaces_of
 from trunnion.verify.contact import PartContact
 from trunnion.verify.contact.facets import FacetContact
+from trunnion.verify.contact.obstacles import Obstacles
 from trunnion.verify.kernels import body, tool_motion
 from trunnion.verify.kernels.contact import facets as kernel
 from trunnion.verify.motion import moves_of
@@ -273,6 +274,57 @@ def test_a_move_is_clear_when_it_is_measured_no_deeper(form, move, triangles, al
     depth = float(engine.along(moves, np.array([1]), threads=1).depth.max())
     if abs(depth - allowed) > tolerance.TURNING_BOUND:
         assert np.isnan(engine.stopped(moves, np.array([1]), allowed)[0, 0]) == (depth <= allowed)
+
+
+@st.composite
+def frames(draw):
+    """A frame somewhere, turned any way."""
+    z = unit(draw(SMALL) + [0.0, 0.0, 1e-3])
+    x = np.cross(z, [0.3, -0.2, 0.9])
+    return Frame(draw(NEAR) * 10.0, x, z)
+
+
+@settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
+@given(
+    form=st.sampled_from(sorted(FORMS)),
+    move=ways(),
+    triangles=TRIANGLES,
+    frame=frames(),
+    other=frames(),
+    allowed=st.sampled_from([0.005, 0.5]),
+)
+def test_moves_in_another_frame_meet_triangles_as_if_these_were_moved_there(
+    form, move, triangles, frame, other, allowed
+):
+    """The setups of a part share the tree of the first one's triangles."""
+    moves, rows = moves_for(FORMS[form], move), np.array([1])
+    there = facets(triangles)
+    home = FacetContact(there.moved(other, frame)).seen_from(frame, other)
+    one, same = (e.along(moves, rows, threads=1) for e in (FacetContact(there), home))
+    bound = tolerance.TURNING_BOUND if moves.turning()[1] else tolerance.CONTACT_BOUND
+    for kind in (0, 1):
+        depth = [max(min(p.depth[0, kind], DEEP), 0.0) for p in (one, same)]
+        assert abs(depth[1] - depth[0]) <= bound + 1e-6
+        if same.depth[0, kind] > bound + 1e-6:
+            place = same.position[0, kind]
+            assert min(same.depth[0, kind], DEEP) <= attained(moves, kind, move, place) + 1e-5
+    assert set(same.face_move.ravel().tolist()) <= {-1, 1}
+    assert (same.face_move[same.face_depth > -np.inf] == 1).all()
+    pose, axis = np.array([[move[0]]]), np.array([[move[2]]])
+    clear, still = [], (move[0], move[0], move[2], move[2], None, 0.0)
+    for engine in (FacetContact(there), home):
+        known = Obstacles.none(1)
+        clear.append(
+            [
+                engine.any_clear(FORMS[form], pose, axis, np.ones((1, 1), bool), allowed, known)[0]
+                for _ in range(2)
+            ]
+        )
+        for point in known.position[0, : known.count[0]]:
+            assert max(attained(moves, kind, still, point) for kind in (0, 1)) > allowed - 1e-5
+    depth = FacetContact(there).along(moves_for(FORMS[form], still), rows, threads=1).depth.max()
+    if abs(depth - allowed) > 2.0 * tolerance.CONTACT_BOUND:
+        assert clear[0] == clear[1] == [depth <= allowed] * 2
 
 
 POCKET = read(block_with_pocket_shape())

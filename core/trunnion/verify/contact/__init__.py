@@ -7,12 +7,14 @@ or turns, by triangles and bounds (`facets.py`); fixtures are triangles from the
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.findings import BadCall, BadInput
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
 from trunnion.part.shape.surfaces import Surfaces
@@ -69,7 +71,8 @@ class PartContact:
                 f"face {int(surfaces.tag[missing[0]])} has no closed form: its contact needs the part's facets"
             )
         self._strips = StripContact(surfaces)
-        self._every = self._free = None
+        self._every: FacetContact | None = None
+        self._free: FacetContact | None = None
         if facets is not None and facets.whole:
             self._every = FacetContact(facets, surfaces.free)
         if facets is not None and len(surfaces.free):
@@ -79,6 +82,21 @@ class PartContact:
                 else FacetContact(facets.of_faces(surfaces.free))
             )
         self._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
+
+    def with_fixtures(self, fixtures: Sequence[Facets]) -> PartContact:
+        """Return the same part as fixtures hold it, in the same memory."""
+        held = copy(self)
+        held._fixtures = FacetContact(_joined(fixtures)) if fixtures else None
+        return held
+
+    def seen_from(self, surfaces: Surfaces, frame: Frame, other: Frame) -> PartContact:
+        """Return the part, given in a frame, for moves in another one, without fixtures: its triangles stay where they are, `surfaces` are
+        its faces as the moves see them."""
+        seen = copy(self)
+        seen.surfaces, seen._strips, seen._fixtures = surfaces, StripContact(surfaces), None
+        seen._every = self._every.seen_from(frame, other) if self._every is not None else None
+        seen._free = self._free.seen_from(frame, other) if self._free is not None else None
+        return seen
 
     def ready(self, progress: Progress = NO_PROGRESS) -> None:
         """Build the trees over triangles, which else the first question does."""

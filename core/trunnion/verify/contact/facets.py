@@ -8,7 +8,7 @@ beyond 1 mm are only known to be at least that.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from threading import Lock
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
 from trunnion.model.tool import Tool
 from trunnion.part.shape.facets import Facets
 from trunnion.progress import NO_PROGRESS, Progress
@@ -26,7 +27,7 @@ from trunnion.verify.cutter import bodies_of_one
 from trunnion.verify.kernels.contact import facets as kernel
 from trunnion.verify.kernels.contact import pose_search
 from trunnion.verify.kernels.contact.bvh import build_bvh
-from trunnion.verify.motion import Moves
+from trunnion.verify.motion import Moves, seen_from
 
 CHUNK = 100
 """Moves between two looks at cancel, fewer when they are long."""
@@ -123,7 +124,7 @@ def tree_of(points: Floats, triangles: Ints, face: Ints, leading: Ints | None = 
 
 
 class FacetContact:
-    """Triangles made ready for many questions. `facets` must be in the frame of the moves.
+    """Triangles made ready for many questions. `facets` must be in the frame of the moves; `seen_from` serves moves in other ones.
 
     The faces of the rows `leading` can be asked alone (`of_leading`), by the same tree.
     """
@@ -139,6 +140,11 @@ class FacetContact:
     def of_leading(self) -> FacetContact:
         """Return the leading faces alone, made ready together with all."""
         return _LeadingContact(self)
+
+    def seen_from(self, frame: Frame, other: Frame) -> FacetContact:
+        """Return the same triangles, given in a frame, for moves in another one: the moves are brought to the triangles, whose tree serves
+        all frames."""
+        return _ContactInFrame(self, frame, other)
 
     def ready(self, progress: Progress = NO_PROGRESS) -> FacetTree:
         """Return the tree, with looks at progress while it is built."""
@@ -276,6 +282,65 @@ class _LeadingContact(FacetContact):
     def tree(self) -> FacetTree:
         """The first tree over the triangles of the whole."""
         return self._whole.tree.first()
+
+
+class _ContactInFrame(FacetContact):
+    """The triangles of a contact, given in a frame, for moves in another one."""
+
+    def __init__(self, whole: FacetContact, frame: Frame, other: Frame) -> None:
+        super().__init__(whole.facets)
+        self._whole, self._frame, self._other = whole, frame, other
+
+    @property
+    def tree(self) -> FacetTree:
+        """The tree over the triangles, where they are."""
+        return self._whole.tree
+
+    def ready(self, progress: Progress = NO_PROGRESS) -> FacetTree:
+        """Return the tree, with looks at progress while it is built."""
+        return self._whole.ready(progress)
+
+    def of_leading(self) -> FacetContact:
+        """Return the leading faces alone, for moves in the same frame."""
+        return self._whole.of_leading().seen_from(self._frame, self._other)
+
+    def any_clear(
+        self,
+        tool: Tool,
+        tips: Floats,
+        axes: Floats,
+        wanted: Bools,
+        allowed: float,
+        obstacles: Obstacles,
+        progress: Progress = NO_PROGRESS,
+        text: str = "",
+        threads: int = 0,
+    ) -> Bools:
+        """Return what `FacetContact.any_clear` does; the obstacles are in the frame of the poses."""
+        known = obstacles.moved(self._other, self._frame)
+        found = self._whole.any_clear(
+            tool,
+            self._frame.to_local(self._other.to_world(tips)),
+            self._frame.local_direction(self._other.world_direction(axes)),
+            wanted,
+            allowed,
+            known,
+            progress,
+            text,
+            threads,
+        )
+        obstacles.put(np.arange(len(tips)), known.moved(self._frame, self._other))
+        return found
+
+    def _measure(
+        self, moves: Moves, rows: Ints, progress: Progress, threads: int, settle: float = np.inf
+    ) -> Penetration:
+        here = seen_from(moves.some(rows), self._other, self._frame)
+        every = np.arange(len(rows))
+        found = self._whole._measure(here, every, progress, threads, settle)
+        position = self._other.to_local(self._frame.to_world(found.position.reshape(-1, 3)))
+        move = np.append(rows, -1)[found.face_move]
+        return replace(found, position=position.reshape(-1, 2, 3), face_move=move)
 
 
 def _starts(cost: Floats) -> Ints:

@@ -13,6 +13,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import Frame
 from trunnion.model.tool import Tool
 from trunnion.verify.cutter import bodies_of_one
 from trunnion.verify.kernels.contact import pose_search as kernel
@@ -36,6 +37,11 @@ class Obstacles:
     def of(self, rows: Ints) -> Obstacles:
         """Return a copy for some of the positions; `put` takes what it learns back."""
         return Obstacles(self.position[rows], self.count[rows])
+
+    def moved(self, frame: Frame, other: Frame) -> Obstacles:
+        """Return a copy, given in a frame, as it is in another."""
+        position = other.to_local(frame.to_world(self.position.reshape(-1, 3)))
+        return Obstacles(position.reshape(self.position.shape), self.count.copy())
 
     def put(self, rows: Ints, known: Obstacles) -> None:
         """Take what is known of some of the positions."""

@@ -33,14 +33,14 @@ def may_lean(machines: Sequence[Machine]) -> bool:
 def part_facets(
     programs: Sequence[Program],
     part: Part,
-    frames: Sequence[Frame],
+    frame: Frame,
     surfaces: Sequence[Surfaces],
     machines: Sequence[Machine],
     progress: Progress,
     fork: FacetsFork | None = None,
-) -> list[Facets]:
-    """Return the part's faces as triangles in each frame: all for a tool that leans, or a machine on which one may lean, else those
-    without closed form; none when none is."""
+) -> Facets | None:
+    """Return the part's faces as triangles in a frame: all for a tool that leans, or a machine on which one may lean, else those
+    without closed form; None when none is."""
     leans = may_lean(machines) or any(
         (np.abs(s.path.axis - [0.0, 0.0, 1.0]) > AXIS_LEAN).any()
         for p in programs
@@ -48,9 +48,7 @@ def part_facets(
     )
     free = {int(s.tag[row]) for s in surfaces for row in s.free}
     if not leans and not free:
-        return []
+        return None
     if leans and fork is not None:
-        found = fork.result(progress).moved(fork.frame, frames[0])
-    else:
-        found = facets_of(part, frames[0], progress=progress, only=None if leans else free)
-    return [found.moved(frames[0], frame) for frame in frames]
+        return fork.result(progress).moved(fork.frame, frame)
+    return facets_of(part, frame, progress=progress, only=None if leans else free)

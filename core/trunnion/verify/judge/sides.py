@@ -30,23 +30,19 @@ class Side:
 def sides_of(
     frames: Sequence[Frame],
     surfaces: Sequence[Surfaces],
-    facets: Sequence[Facets | None],
+    facets: Facets | None,
     fixtures: Sequence[Sequence[Fixture]],
     progress: Progress = NO_PROGRESS,
 ) -> list[Side]:
-    """Return the side of every frame, from the part's faces in it and what holds it there."""
-    sides = []
-    for frame, faces, triangles, held in zip(frames, surfaces, facets, fixtures, strict=True):
+    """Return the side of every frame, from the part's faces in it and what holds it there; `facets` are in the first frame, and their tree
+    serves all."""
+    sides: list[Side] = []
+    home = PartContact(surfaces[0], facets)
+    for frame, faces, held in zip(frames, surfaces, fixtures, strict=True):
         progress.check()
-        part = PartContact(faces, triangles)
+        part = home if not sides else home.seen_from(faces, frames[0], frame)
         meshes = [fixture_facets(f, frame) for f in progress.each(held)]
-        sides.append(
-            Side(
-                frame=frame,
-                part=part,
-                contact=PartContact(faces, triangles, meshes) if meshes else part,
-            )
-        )
+        sides.append(Side(frame=frame, part=part, contact=part.with_fixtures(meshes)))
     return sides
 
 

@@ -74,7 +74,7 @@ def prove(
     frames = [p.setup.frame for p in programs] or [blank.frame]
     surfaces = [surfaces_of(part, f, progress.part(0.1, 0.15)) for f in frames]
     facets = part_facets(
-        programs, part, frames, surfaces, machines, progress.part(0.15, 0.2), facets_fork
+        programs, part, frames[0], surfaces, machines, progress.part(0.15, 0.2), facets_fork
     )
     return prove_surfaces(
         programs,
@@ -102,13 +102,13 @@ def prove_surfaces(
     progress: Progress = NO_PROGRESS,
     planned_faces: Collection[int] = (),
     material: Material | None = None,
-    facets: Sequence[Facets] = (),
+    facets: Facets | None = None,
     unasked: Collection[int] = (),
     turned: TurnedWork | None = None,
 ) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
 
-    `facets` are the same faces as triangles, one each: without them no tool may lean. `unasked` are the tags of faces
+    `facets` are the same faces as triangles, in the first setup's frame: without them no tool may lean. `unasked` are the tags of faces
     that nobody wants finished: they are in the way of tools, and material. `turned` is the turning before these programs, which has made
     the blank what it is. Raises `BadInput` for turning among them.
     """
@@ -116,12 +116,10 @@ def prove_surfaces(
     frames = [p.setup.frame for p in programs] or [blank.frame]
     held = [p.setup.fixtures for p in programs] or [()]
     sides = progress.aside(
-        lambda own: sides_of(frames, surfaces, facets or [None] * len(frames), held, own),
+        lambda own: sides_of(frames, surfaces, facets, held, own),
         "Making the faces ready for questions",
     )
-    samples = samples_of(
-        surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets[0] if facets else None
-    )
+    samples = samples_of(surfaces[0], settings.spacing, progress.part(0.0, 0.05), facets)
     stock = progress.aside(
         lambda _: stock_of(programs, blank, settings),
         "Filling the blank with rays",
@@ -160,7 +158,7 @@ def prove_surfaces(
         settings,
         planned_faces,
         progress.part(0.8, 1.0),
-        machines if facets else (),
+        machines if facets is not None else (),
         unasked,
         before,
         turned.before if turned is not None else None,

@@ -39,7 +39,7 @@ from verify_tools import (
     tool_of,
 )
 
-FACETS = (block_facets(),)
+FACETS = block_facets()
 BALL = long_reaching(tool_of("ball", diameter=6.0, corner_radius=3.0, flute_length=12.0))
 BULL = long_reaching(tool_of("bull", diameter=6.0, corner_radius=2.0, flute_length=12.0))
 LEAN = lean(15.0)

@@ -180,7 +180,7 @@ def judged():
     """The faults by operation, what the verdict says of every operation, and its errors by operation."""
     faults, sections = zip(*map(planted, NAMED), strict=True)
     verdict = proof(
-        *clean_plan(), *sections, machine=FIVE_AXES, facets=(block_facets(),), bundles="z", cell=1.0
+        *clean_plan(), *sections, machine=FIVE_AXES, facets=block_facets(), bundles="z", cell=1.0
     )
     errors = {}
     for f in verdict.findings:

@@ -197,7 +197,7 @@ def test_a_leaning_tool_on_three_axes_fails_in_words_and_passes_on_five():
     high = replace(
         section, path=replace(section.path, position=section.path.position + [0.0, 0.0, 40.0])
     )
-    facets = (block_facets(),)
+    facets = block_facets()
     assert codes(proof(*clean_plan(), high, facets=facets, bundles="z")) == {"verify.rotary"}
     assert codes(proof(*clean_plan(), high, facets=facets, bundles="z", machine=FIVE_AXES)) == set()
 
@@ -215,7 +215,7 @@ def test_a_rotary_axis_beyond_its_limit_fails():
             replace(a, low=-30.0, high=30.0) if a.name == "A" else a for a in FIVE_AXES.axes
         ),
     )
-    facets = (block_facets(),)
+    facets = block_facets()
     assert codes(proof(*clean_plan(), high, facets=facets, bundles="z", machine=narrow)) == {
         "verify.rotary"
     }
