@@ -8,7 +8,8 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.playback import CHORD_ANGLE, turned_axes
 
-MOTIONS = ("cut", "entry", "lead", "link", "retract", "rapid")
+RAPID = "rapid"
+MOTIONS = ("cut", "entry", "lead", "link", "retract", RAPID)
 """Kinds of motion by the palette's words: those of the marks in their order, and rapids."""
 AXIS = "tool_axis"
 """The palette's word for the strokes that show how the tool stands."""
@@ -21,7 +22,7 @@ _UPRIGHT = 1e-6
 def kinds_of(path: Toolpath) -> Ints:
     """Return for each block (n,) the row of its kind in `MOTIONS`."""
     return np.asarray(
-        np.where(path.motion == Motion.RAPID, MOTIONS.index("rapid"), path.mark), dtype=np.int64
+        np.where(path.motion == Motion.RAPID, MOTIONS.index(RAPID), path.mark), dtype=np.int64
     )
 
 

@@ -29,6 +29,7 @@ from trunnion.report.lines import (
     AXIS,
     MOST_STROKES,
     MOTIONS,
+    RAPID,
     STROKE_EVERY,
     STROKE_LENGTH,
     kinds_of,
@@ -48,6 +49,8 @@ FILLED = 0.92
 """How far what is drawn may reach from the middle of a picture towards its border."""
 _NAMED_POINTS = 5
 """Worst positions whose figure is written on the deviation's picture."""
+_SOLID_RAPIDS, _FAINTEST = 600.0, 0.03
+"""Rapids up to this number are drawn solid; more are drawn the fainter the more they are, down to this opacity, or they hide the cuts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -262,8 +265,13 @@ def _toolpaths(session: Session, mesh: Mesh, palette: Palette) -> Plotter:
         if len(made.path) and made.operation in operations:
             _gather(gathered, made.path, setups[operations[made.operation].setup], size)
     for word, pieces in gathered.items():
+        count = sum(map(len, pieces))
         plotter.add_mesh(
-            _segments(pieces), color=palette.motion(word), line_width=1.0, lighting=False
+            _segments(pieces),
+            color=palette.motion(word),
+            line_width=1.0,
+            lighting=False,
+            opacity=max(min(1.0, _SOLID_RAPIDS / count), _FAINTEST) if word == RAPID else 1.0,
         )
     _legend(plotter, {word.replace("_", " "): palette.motion(word) for word in gathered})
     return _look(plotter, session)
@@ -296,7 +304,7 @@ def _segments(pieces: Iterable[Floats]) -> Any:
 def _deviation(
     session: Session, mesh: Mesh, shown: DeviationMap, palette: Palette, progress: Progress
 ) -> tuple[Plotter, Bools]:
-    """Return the picture of a map, and which of its worst positions (k,) are seen and have their figure in it."""
+    """Return the picture of a map, and which of its worst positions (k,) are seen; the worst of these have their figures in it."""
     progress.check()
     plotter = _plotter()
     surface = _surface(shown.points, shown.triangles)
@@ -307,13 +315,13 @@ def _deviation(
     _outline(plotter, _surface(mesh.points, mesh.triangles))
     _legend(plotter, deviation_legend(shown, palette))
     _look(plotter, session)
-    worst = shown.worst[:_NAMED_POINTS]
-    points = np.array([w.point for w in worst]).reshape(-1, 3)
+    points = np.array([w.point for w in shown.worst]).reshape(-1, 3)
     seen = seen_from(np.array(plotter.camera.position), points, mesh)
-    if seen.any():
+    named = np.flatnonzero(seen)[:_NAMED_POINTS]
+    if len(named):
         plotter.add_point_labels(
-            points[seen],
-            [fine_length(w.deviation) for w, there in zip(worst, seen, strict=True) if there],
+            points[named],
+            [fine_length(shown.worst[row].deviation) for row in named],
             font_size=15,
             text_color="black",
             shape_color="white",
@@ -329,11 +337,11 @@ def _deviation(
 
 
 def deviation_caption(shown: DeviationMap, seen: Bools) -> str:
-    """Return the words under a deviation's picture: the worst positions, and which of them (k,) are on the far side."""
+    """Return the words under a deviation's picture: the worst positions, and by `seen` (k,) which of them are on the far side."""
     words = "Deviation of the finished part: + is material left, - is gouge"
     worst = [
         f"face {w.face} {fine_length(w.deviation)}" + ("" if there else " (not seen from here)")
-        for w, there in zip(shown.worst, seen, strict=False)
+        for w, there in zip(shown.worst[:_NAMED_POINTS], seen, strict=False)
     ]
     return f"{words}; worst: {', '.join(worst)}" if worst else words
 

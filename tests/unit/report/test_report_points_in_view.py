@@ -6,7 +6,9 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+import samples
 from trunnion.geometry.mesh import Mesh
+from trunnion.progress import NO_PROGRESS
 from trunnion.report.deviation import DeviationMap, WorstPoint
 from trunnion.report.pictures import deviation_caption
 from trunnion.report.points_in_view import seen_from
@@ -68,3 +70,39 @@ def test_the_caption_names_what_is_not_seen():
     assert deviation_caption(shown, np.array([True, False])).endswith(
         "worst: face 3 -50 µm, face 81 +14.00 mm (not seen from here)"
     )
+
+
+def test_figures_are_those_of_the_worst_that_are_seen(monkeypatch):
+    """Six places at the back are worse than the one in front: its figure is written all the same, and the caption names the five worst."""
+    import pyvista
+
+    from trunnion.pipeline import Engine
+    from trunnion.report.palette import load_palette
+    from trunnion.report.pictures import _deviation
+
+    session = Engine().open(samples.written(samples.block_with_pocket_shape()))
+    mesh = cubes((0.0, 0.0, 0.0))
+    written = []
+    monkeypatch.setattr(
+        pyvista.Plotter, "add_point_labels", lambda _, points, labels, **__: written.extend(labels)
+    )
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    behind, before = low + [1.0, 1.0, 0.0], high - [1.0, 1.0, 0.0]
+    shown = DeviationMap(
+        points=mesh.points,
+        triangles=mesh.triangles,
+        face=mesh.face,
+        value=np.zeros(len(mesh.points)),
+        low=-0.02,
+        high=0.02,
+        limit=0.05,
+        worst=tuple(
+            WorstPoint(face=n, point=tuple(behind.tolist()), deviation=14.0) for n in range(6)
+        )
+        + (WorstPoint(face=9, point=tuple(before.tolist()), deviation=0.2),),
+    )
+    plotter, seen = _deviation(session, mesh, shown, load_palette(), NO_PROGRESS)
+    plotter.close()
+    assert seen.tolist() == [False] * 6 + [True]
+    assert written == ["+200 µm"]
+    assert deviation_caption(shown, seen).count("face") == 5
