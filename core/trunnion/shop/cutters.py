@@ -21,6 +21,7 @@ USES = (
     "drill",
     "spot",
     "countersink",
+    "hole_mill",
     "interrupted",
 )
 END_MILL = "end mill"
@@ -46,8 +47,8 @@ _HALF_TURN, _QUARTER_TURN = 180.0, 90.0
 class Cutter:
     """A catalogue cutter with what it is made for: ISO 513 groups and uses.
 
-    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot`, `countersink` and
-    `interrupted` (turning in the gaps between bosses).
+    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot`, `countersink`, `hole_mill`
+    (end mills that mill small holes and nothing else) and `interrupted` (turning in the gaps between bosses).
     """
 
     tool: Tool

@@ -161,7 +161,7 @@ def test_a_hole_that_no_drill_gets_at_for_what_stands_around_is_left_to_another_
         return Candidates(tools=(), reason="every drill would come too near", hindered=True)
 
     monkeypatch.setattr("trunnion.plan.holes.route.drills_for", hindered)
-    monkeypatch.setattr("trunnion.plan.holes.route.mills_for", lambda *_: Candidates(tools=()))
+    monkeypatch.setattr("trunnion.plan.holes.route.mills_of", lambda *_: Candidates(tools=()))
     engine, session = own("casing")
     found = engine.run(session, until="route")
     codes = {f.code for f in found.process.findings}

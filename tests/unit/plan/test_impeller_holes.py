@@ -72,13 +72,28 @@ def test_holes_are_spotted_first_where_the_shop_wants_that():
 
 
 def test_a_flat_floor_that_no_end_mill_gets_at_keeps_the_point_of_its_drill():
-    engine, session = bolted(2.5)
+    engine, session = bolted(1.0)
     process = engine.run(session, until="route").process
     assert [o.kind for o in process.operations if "hole" in o.feature] == ["drill"]
     # One warning for all that have the same reason.
     (told,) = [f for f in process.findings if f.code == "route.no-cutter"]
     assert told.severity is Severity.WARNING and "hole floors" in told.text
     assert {f.id for f in session.recognition.of_kind("hole")} <= set(told.where)
+
+
+def test_a_hole_that_no_drill_has_the_diameter_of_is_milled_by_a_small_end_mill():
+    """A random wheel was refused for holes of D 3.374: the smallest end mill was one of 4 mm."""
+    engine, session = bolted(3.374)
+    process = engine.run(session, until="route").process
+    (mill,) = [o for o in process.operations if "hole" in o.feature]
+    assert (mill.kind, mill.setup, len(mill.all_features)) == ("hole_mill", "S2", HOLES)
+    assert mill.cutter.diameter <= 0.8 * 3.374 and mill.cutter.form == "flat"
+    shop = engine.context_of(session).shop
+    # What is for holes alone cuts nothing else.
+    small = shop.tools_for("N", "hole_mill")
+    assert small and not {t.name for t in small} & {
+        t.name for use in ("face", "rough", "finish", "surface") for t in shop.tools_for("N", use)
+    }
 
 
 def test_holes_that_neither_setup_reaches_are_told_of():

@@ -36,7 +36,7 @@ from trunnion.plan.holes.hole import (
     is_plain_through,
 )
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
-from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_for, sinks_for
+from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups.frames import Direction, cutting_setup
 from trunnion.plan.setups.state import SetupPlanState
@@ -68,8 +68,8 @@ class SetupHole:
 
     def mills_for(self, part: PlannedHole) -> Candidates:
         """Return the end mills that mill a part of the hole, gone down from its mouth."""
-        cutters = self.state.cutters("finish")
-        return mills_for(part, cutters, self.around, self.shape.bore.top, self.breakthrough)
+        shop, group = self.state.shop, self.state.material.iso_group
+        return mills_of(shop, group, part, self.around, self.shape.bore.top, self.breakthrough)
 
 
 def reached_holes(state: SetupPlanState, holes: Sequence[Feature]) -> tuple[SetupHole, ...]:

@@ -17,6 +17,7 @@ from trunnion.plan.holes.axis_clearance import AxisClearance, SkinGroups
 from trunnion.plan.holes.hole import Countersink, PlannedHole
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.tool_choice import Candidates, depth_reached
+from trunnion.shop import Shop
 from trunnion.units import trimmed
 
 CHIP_SPACE = 0.5
@@ -174,6 +175,21 @@ def drills_for(
     own = [t for t in free if abs(t.point_angle - hole.point_angle) <= SAME_ANGLE]
     fitting = free if hole.through or not own else own
     return Candidates(tools=tuple(sorted(fitting, key=_order_of(hole))))
+
+
+def mills_of(
+    shop: Shop,
+    iso_group: str,
+    hole: PlannedHole,
+    around: HoleSpace,
+    top: float,
+    breakthrough: float,
+) -> Candidates:
+    """Return the catalogue's end mills for a group of materials that mill a hole (`mills_for`): the small ones for holes alone only where
+    no other does."""
+    others, small = (shop.tools_for(iso_group, use) for use in ("finish", "hole_mill"))
+    found = mills_for(hole, others, around, top, breakthrough)
+    return found if found.tools else mills_for(hole, (*others, *small), around, top, breakthrough)
 
 
 def mills_for(

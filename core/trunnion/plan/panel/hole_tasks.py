@@ -18,7 +18,7 @@ from trunnion.plan.holes.hole import (
     nearer_half,
 )
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
-from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_for, sinks_for
+from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
 from trunnion.settings import choose
@@ -140,8 +140,8 @@ def _bored_here(
 
 
 def _mills(state: PanelPlanState, known: HolePlanning, hole: PlannedHole, top: float) -> Candidates:
-    tools = state.shop.tools_for(state.material.iso_group, "finish")
-    return mills_for(hole, tools, known.around, top, known.drilling.breakthrough)
+    group = state.material.iso_group
+    return mills_of(state.shop, group, hole, known.around, top, known.drilling.breakthrough)
 
 
 def _of_stage(
