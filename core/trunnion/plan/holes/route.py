@@ -1,6 +1,6 @@
 """The operations on the holes of a part: along their own axes, one for all equal holes of one direction.
 
-What the setup does not reach, such as the lower flange's bolt circle under a casing's upper flange, or the threads in a wheel's back, is
+What the setup does not reach, such as the lower flange's bolt circle under a casing's upper flange, or the bolt holes in a wheel's back, is
 made with the part turned over.
 """
 
