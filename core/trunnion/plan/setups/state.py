@@ -86,11 +86,9 @@ class SetupPlanState:
         direction: Direction = UPRIGHT,
         others: tuple[str, ...] = (),
         kind: str = "",
-        setup: str = "",
         data: CuttingData | None = None,
     ) -> None:
-        """Add an operation of a stage, with milling data for a depth and a width (mm) of cut where no others are given; in this setup where
-        none is named."""
+        """Add an operation of a stage, with milling data for a depth and a width (mm) of cut where no others are given."""
         kind = kind or stage.kind
         if data is None:
             data = cutting_data(tool, self.material, self.machine, kind, self.cutting, depth, width)
@@ -100,7 +98,7 @@ class SetupPlanState:
                 kind=kind,
                 strategy=stage.strategy,
                 feature=feature,
-                setup=setup or self.setup.name,
+                setup=self.setup.name,
                 tool=tool,
                 data=data,
                 faces=faces,
