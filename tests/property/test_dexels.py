@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
@@ -185,10 +186,44 @@ def test_the_deepest_of_a_ray_in_a_swinging_body_is_found_wherever_it_is(form, s
         ray, span, 10.0 + tool.radius + rng.uniform(-0.5, 0.3) * lean * tool.flute_length, 10.0
     )
     low, high = np.sort(rng.uniform(8.0 - height - 2.0, 8.0 - height + tool.flute_length + 2.0, 2))
-    deepest = max(kernel._swept_depth(*body, ray, w)[0] for w in np.linspace(low, high, 600))
+    deepest = max(
+        kernel._swept_depth(*body, ray, w, kernel.NO_GUESS)[0] for w in np.linspace(low, high, 600)
+    )
     found, place = kernel._max_depth_turning(*body, ray, low, high, -0.05)
     assert max(found, -0.05) >= deepest - tolerance.CONTACT_BOUND
-    assert low <= place <= high and found <= kernel._swept_depth(*body, ray, place)[0] + 1e-9
+    assert (
+        low <= place <= high
+        and found <= kernel._swept_depth(*body, ray, place, kernel.NO_GUESS)[0] + 1e-9
+    )
+
+
+@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("form", sorted(FORMS))
+def test_a_guess_of_when_it_is_deepest_changes_only_how_soon_it_is_found(form, seed):
+    rng, tool = np.random.default_rng(100 + seed), FORMS[form]
+    lean = rng.uniform(0.0, 0.5, 2)
+    axis = np.array([np.sin(lean[0]), np.sin(lean[1]) * np.cos(lean[0]), 1.0])
+    axis /= np.linalg.norm(axis)
+    end = np.array([10.0, 10.0, 8.0]) + rng.uniform(-6.0, 6.0, 3)
+    moves = moves_of(
+        [leaning_section(tool, np.array([[10.0, 10.0, 8.0], end]), np.array([axis, axis]))]
+    )
+    span = spans_of(moves, np.array([1]), np.array([1]), np.zeros(1, bool)).row[0]
+    piece, ray = moves.bodies.piece[0], np.zeros(kernel.RAY_COLUMNS)
+    first, last = int(piece[kernel.CLOSED_FIRST]), int(piece[kernel.CLOSED_LAST])
+    body = moves.bodies.arc, first, last, np.inf
+    kernel._ray_in_tool_frame(ray, span, *(10.0 + rng.uniform(-12.0, 12.0, 2)))
+    at = rng.uniform(-5.0, 40.0, 12)
+    plain = [kernel._swept_depth(*body, ray, w, kernel.NO_GUESS) for w in at]
+    for guess in (0.0, 1e-6, 0.2, 0.5, 0.9, 1.0, *rng.uniform(0.0, 1.0, 4)):
+        for w, (deep, _, _) in zip(at, plain, strict=True):
+            found, slope, when = kernel._swept_depth(*body, ray, w, guess)
+            assert abs(found - deep) <= 2.0 * kernel.NOISE + 0.12 * max(-deep, 0.0)
+            assert 0.0 <= when <= 1.0
+            # The slope bounds the depth everywhere on the ray.
+            for other, (its, _, _) in zip(at, plain, strict=True):
+                room = 2.0 * kernel.NOISE + 0.06 * max(-its, 0.0)
+                assert its <= found + slope * (other - w) + room
 
 
 def check_rays(tool, section, rng):

@@ -83,6 +83,8 @@ TWIST, SMALLER, MARKS = 12, 13, 14
 RAY_COLUMNS = 22
 MOST_GRAZED = 64
 """Positions that a rapid may be suspected at."""
+NO_GUESS = -1.0
+"""Instead of a time of a span: nothing is known of when a position is deepest."""
 GAP = 2e-4
 """mm: between two lobes of a tool that swings, what is less than three times this outside may be taken too, within a third of
 `tolerance.STOCK_CHORD`."""
@@ -127,25 +129,43 @@ def _body_depth(
 
 @njit(**BORROWED)
 def _swept_depth(
-    arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float
+    arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, guess: float
 ) -> tuple[float, float, float]:
     """Return F(w), the largest depth (mm) of a ray's point over a span, a slope with which it bounds F
     along the ray from above, and a time at which the point is as deep.
 
     The value is an upper bound, within `NOISE` of F, or within a twentieth of it where the point is
-    outside: it errs deep.
+    outside: it errs deep. `guess` is a time at which the point may be deepest, as the position
+    before was, `NO_GUESS` for none: what is found does not hang on it, only how soon.
     """
+    t0, t1, s0, s1 = 0.0, 1.0, -1.0, 1.0
+    f0 = slope0 = f1 = slope1 = 0.0
+    if 0.0 < guess < 1.0:
+        # The tangent plane there bounds all times: at best it is level.
+        f, slope, s = _body_depth(arcs, first, last, limit, ray, w, guess)
+        gap = s * (1.0 - guess) if s > 0.0 else -s * guess
+        if gap <= NOISE or (f + gap < 0.0 and gap <= -0.05 * (f + gap)):
+            return f + gap, slope, guess
+        if s > 0.0:
+            t0, f0, slope0, s0 = guess, f, slope, s
+        else:
+            t1, f1, slope1, s1 = guess, f, slope, s
     # A concave function that falls at the start, or rises at the end, is greatest there.
-    f0, slope0, s0 = _body_depth(arcs, first, last, limit, ray, w, 0.0)
-    if s0 <= 0.0:
-        return f0, slope0, 0.0
-    f1, slope1, s1 = _body_depth(arcs, first, last, limit, ray, w, 1.0)
-    if s1 >= 0.0:
-        return f1, slope1, 1.0
+    if guess >= 1.0:
+        f1, slope1, s1 = _body_depth(arcs, first, last, limit, ray, w, 1.0)
+        if s1 >= 0.0:
+            return f1, slope1, 1.0
+    if s0 < 0.0:
+        f0, slope0, s0 = _body_depth(arcs, first, last, limit, ray, w, 0.0)
+        if s0 <= 0.0:
+            return f0, slope0, 0.0
+    if s1 > 0.0:
+        f1, slope1, s1 = _body_depth(arcs, first, last, limit, ray, w, 1.0)
+        if s1 >= 0.0:
+            return f1, slope1, 1.0
     # Cutting planes in time (Kelley, 1960). Invariant: D rises at t0 and falls at t1. The mixture
     # of both tangent planes that is level in time bounds D for all times, and its slope along the
     # ray bounds F.
-    t0, t1 = 0.0, 1.0
     most, slope = f0, slope0
     for step in range(60):
         # Two tangent planes, one rising over time and one falling: where they meet bounds all times.
@@ -178,7 +198,7 @@ def _bisect_entry(
     (mm); the inner side, so not too much is cut."""
     while abs(inside - outside) > THIN:
         w = 0.5 * (inside + outside)
-        if _swept_depth(arcs, first, last, limit, ray, w)[0] > 0.0:
+        if _swept_depth(arcs, first, last, limit, ray, w, NO_GUESS)[0] > 0.0:
             inside = w
         else:
             outside = w
@@ -187,18 +207,29 @@ def _bisect_entry(
 
 @njit(**BORROWED)
 def _newton_entry(
-    arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
+    arcs: Floats,
+    first: int,
+    last: int,
+    limit: float,
+    ray: Floats,
+    w: float,
+    end: float,
+    guess: float,
+    f: float,
+    slope: float,
 ) -> tuple[float, float]:
     """Return where a ray that runs from w towards `end` enters what is swept, NaN when it doesn't
     before, and a time to try first for it in the body.
 
     Newton's method on F from outside: F(w) + slope (w' - w) bounds F, so its root is not beyond the
-    entry.
+    entry. `guess` as for `_swept_depth`; 0 says that f and slope are known to be those at w, where
+    the point is deepest at the start.
     """
     sense = 1.0 if end > w else -1.0
-    before = w
+    before, t = w, guess
     for step in range(100):
-        f, slope, t = _swept_depth(arcs, first, last, limit, ray, w)
+        if step > 0 or guess != 0.0:
+            f, slope, t = _swept_depth(arcs, first, last, limit, ray, w, t)
         if f > 1e-5 and step > 0:
             # Only where the body turns is the depth not quite concave, and a step too long.
             return _bisect_entry(arcs, first, last, limit, ray, before, w), 0.5
@@ -219,15 +250,16 @@ def _newton_entry(
 @njit(**BORROWED, inline="always")
 def _depth_bound(
     arcs: Floats, first: int, last: int, limit: float, ray: Floats, w: float, end: float
-) -> float:
+) -> tuple[float, float, float, float]:
     """Return an upper bound (mm) of the depth between two positions over a span, from one evaluation at w
-    and t = 0.
+    and t = 0, and that: depth, and slopes along w and t.
 
     Tangents in w and t, plus the bilinear term: TWIST is how far a unit of w is turned over the
     span.
     """
     f, slope, s = _body_depth(arcs, first, last, limit, ray, w, 0.0)
-    return f + max(slope * (end - w), 0.0) + max(s, 0.0) + ray[TWIST] * abs(end - w)
+    bound = f + max(slope * (end - w), 0.0) + max(s, 0.0) + ray[TWIST] * abs(end - w)
+    return bound, f, slope, s
 
 
 @njit(**BORROWED)
@@ -253,7 +285,7 @@ def _max_depth_turning(
         return best, position
     w = low
     while w < high:
-        f, slope, _t = _swept_depth(arcs, first, last, limit, ray, w)
+        f, slope, _t = _swept_depth(arcs, first, last, limit, ray, w, NO_GUESS)
         if f > best:
             best, position = f, w
         steep = slope + ray[TWIST]
@@ -272,8 +304,8 @@ def _max_depth(
 
     Cutting planes along w, as `_swept_depth` has them along t.
     """
-    f0, s0, _t = _swept_depth(arcs, first, last, limit, ray, low)
-    f1, s1, _t = _swept_depth(arcs, first, last, limit, ray, high)
+    f0, s0, _t = _swept_depth(arcs, first, last, limit, ray, low, NO_GUESS)
+    f1, s1, _t = _swept_depth(arcs, first, last, limit, ray, high, NO_GUESS)
     best, position = (f0, low) if f0 >= f1 else (f1, high)
     if s0 <= 0.0 or s1 >= 0.0:
         return best, position
@@ -284,7 +316,7 @@ def _max_depth(
         if step % 2:
             w = low + (high - low) * s0 / (s0 - s1)
         w = min(max(w, low + 1e-3 * (high - low)), high - 1e-3 * (high - low))
-        f, s, _t = _swept_depth(arcs, first, last, limit, ray, w)
+        f, s, _t = _swept_depth(arcs, first, last, limit, ray, w, NO_GUESS)
         if f > best:
             best, position = f, w
         if s > 0.0:
@@ -539,7 +571,7 @@ def _certain_interval(
         step = b - a
         while step > short and not _inside_together(arcs, first, last, limit, ray, a, a + step):
             step *= 0.5
-            if _swept_depth(arcs, first, last, limit, ray, a + step)[0] < -GAP:
+            if _swept_depth(arcs, first, last, limit, ray, a + step, NO_GUESS)[0] < -GAP:
                 return a, a + step
         if step >= b - a:
             break
@@ -617,17 +649,20 @@ def _tridexel_cut_ray(
             continue
         # From the end nearer to the middle of the body's box: there the bound rejects most.
         near, far = (a, b) if abs(a - middle) < abs(b - middle) else (b, a)
-        if _depth_bound(arcs, first, last, limit, ray, near, far) <= NOISE:
+        bound, f, slope, s = _depth_bound(arcs, first, last, limit, ray, near, far)
+        if bound <= NOISE:
             k += 1
             continue
         # For a still axis F is concave: no entry from one end means none at all. Where the tool
         # turns, the other end is tried too, and an entry that one side overshot is bisected.
         turns = ray[TWIST] > 0.0
-        from_near, t_near = _newton_entry(arcs, first, last, limit, ray, near, far)
+        guess = 0.0 if s <= 0.0 else 1.0
+        from_near, t_near = _newton_entry(arcs, first, last, limit, ray, near, far, guess, f, slope)
+        guess = t_near if t_near > 0.0 else NO_GUESS
         from_far, t_far = (
             (np.nan, t_near)
             if math.isnan(from_near) and not turns
-            else _newton_entry(arcs, first, last, limit, ray, far, near)
+            else _newton_entry(arcs, first, last, limit, ray, far, near, guess, 0.0, 0.0)
         )
         if math.isnan(from_near) and math.isnan(from_far):
             k += 1
@@ -720,7 +755,7 @@ def _may_hide(
                 )
                 if deepest > -0.7072 * pitch:
                     # Across rays the depth grows by what its slope along them leaves, up to half a diagonal.
-                    slope = _swept_depth(arcs, first, last, np.inf, ray, w)[1]
+                    slope = _swept_depth(arcs, first, last, np.inf, ray, w, NO_GUESS)[1]
                     if deepest + 0.7072 * pitch * math.sqrt(max(1.0 - slope * slope, 0.0)) > 0.0:
                         return True
     return False
@@ -772,15 +807,21 @@ def _graze_candidates(
                     origin[1] + (j + (y + 0.5) / fine) * pitch,
                 )
                 _ray_in_tool_frame(ray, span, u, v)
-                a, _t = _newton_entry(arcs, first, last, np.inf, ray, box[2], box[5])
+                a, _t = _newton_entry(
+                    arcs, first, last, np.inf, ray, box[2], box[5], NO_GUESS, 0.0, 0.0
+                )
                 if math.isnan(a):
                     continue
-                b, _t = _newton_entry(arcs, first, last, np.inf, ray, box[5], box[2])
+                b, _t = _newton_entry(
+                    arcs, first, last, np.inf, ray, box[5], box[2], NO_GUESS, 0.0, 0.0
+                )
                 if math.isnan(b) or b <= a:
                     continue
                 w = _neighbour_material(rays, columns, row, end_row, i, j, a, b, ray[SMALLER])
                 if not math.isnan(w):
-                    deep = _swept_depth(arcs, first, last, np.inf, ray, w)[0] + ray[SMALLER]
+                    deep = (
+                        _swept_depth(arcs, first, last, np.inf, ray, w, NO_GUESS)[0] + ray[SMALLER]
+                    )
                     quarter = 2 * (2 * y // fine) + 2 * x // fine
                     if deep > best[quarter, 3]:
                         best[quarter, 0], best[quarter, 1], best[quarter, 2], best[quarter, 3] = (
@@ -896,7 +937,7 @@ def _deepest_of_piece(
                 if (
                     b <= a
                     or thick <= best
-                    or _depth_bound(arcs, first, last, np.inf, ray, a, b) <= best
+                    or _depth_bound(arcs, first, last, np.inf, ray, a, b)[0] <= best
                 ):
                     continue
                 deepest, w = _max_depth_turning(arcs, first, last, np.inf, ray, a, b, best)
