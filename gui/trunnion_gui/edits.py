@@ -11,6 +11,9 @@ from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
+from trunnion.plan.manual.operation_copy import with_copy as copied
+from trunnion.plan.manual.operation_order import with_operation_before as moved_before
+from trunnion.plan.manual.operation_state import with_suppressed as suppressed_in
 from trunnion.settings import Value
 
 Edit = Callable[[Session], Session]
@@ -161,16 +164,12 @@ def with_kind(id: str, kind: str) -> Edit:
 def without_operation(id: str) -> Edit:
     """Return the edit that deletes an operation, also for when its step runs again."""
 
-    def edit(session: Session) -> Session:
-        tree = _process(session)
-        return replace(session, process=tree.without(tree.operation(id).id))
-
-    return edit
+    return _with_process(lambda tree: tree.without(tree.operation(id).id))
 
 
 def with_suppressed(id: str, suppressed: bool) -> Edit:
     """Return the edit that keeps an operation in the tree without cutting, or takes it up again."""
-    return _with_operation(id, lambda o: replace(o, suppressed=suppressed, by_hand=True))
+    return _with_process(lambda tree: suppressed_in(tree, id, suppressed))
 
 
 def with_operation_choice(id: str, key: str, value: Value) -> Edit:
@@ -188,49 +187,28 @@ def with_operation_before(id: str, before: str | None) -> Edit:
 
     Raises `Refused` when the operation would come before one that it needs, or after one that needs it.
     """
-
-    def edit(session: Session) -> Session:
-        tree = _process(session)
-        moved = replace(tree.operation(id), by_hand=True)
-        if before == id:
-            return session
-        if before is not None and tree.operation(before).setup != moved.setup:
-            raise Refused(
-                f"{id} is cut in setup {moved.setup} and can't be moved to {tree.operation(before).setup}"
-            )
-        rest = [o for o in tree.operations if o.id != id]
-        index = _index_of(rest, moved, before)
-        ordered = (*rest[:index], moved, *rest[index:])
-        _check_order(ordered)
-        if [o.id for o in ordered] == [o.id for o in tree.operations]:
-            return session
-        return replace(session, process=replace(tree, operations=ordered))
-
-    return edit
+    return _with_process(lambda tree: moved_before(tree, id, before))
 
 
-def _index_of(rest: list[Operation], moved: Operation, before: str | None) -> int:
-    if before is not None:
-        return next(n for n, o in enumerate(rest) if o.id == before)
-    return max((n + 1 for n, o in enumerate(rest) if o.setup == moved.setup), default=len(rest))
-
-
-def _check_order(operations: tuple[Operation, ...]) -> None:
-    row = {o.id: n for n, o in enumerate(operations)}
-    for o in operations:
-        for first in o.after:
-            if row.get(first, -1) > row[o.id]:
-                raise Refused(
-                    f"{o.id} must come after {first}: move {first} first, or delete one of them"
-                )
+def with_copy(id: str) -> Edit:
+    """Return the edit that copies an operation: the same work once more, right behind it."""
+    return _with_process(lambda tree: copied(tree, id)[0])
 
 
 def _with_operation(id: str, change: Callable[[Operation], Operation]) -> Edit:
-    def edit(session: Session) -> Session:
-        tree = _process(session)
+    def changed(tree: ProcessTree) -> ProcessTree:
         before = tree.operation(id)
         after = change(before)
-        return session if after == before else replace(session, process=tree.with_operation(after))
+        return tree if after == before else tree.with_operation(after)
+
+    return _with_process(changed)
+
+
+def _with_process(change: Callable[[ProcessTree], ProcessTree]) -> Edit:
+    def edit(session: Session) -> Session:
+        tree = _process(session)
+        after = change(tree)
+        return session if after is tree else replace(session, process=after)
 
     return edit
 

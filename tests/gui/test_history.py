@@ -100,7 +100,7 @@ def test_an_operation_moves_in_front_of_another_and_is_marked(programmed):
         "op-05",
         "op-07",
     ]
-    assert after.process.operation("op-06").by_hand
+    assert after.process.operation("op-06").moved
 
 
 def test_finishing_before_roughing_is_refused_in_words(programmed):

@@ -452,6 +452,25 @@ def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle, qtbot
     assert order.index("op-06") == order.index("op-04") - 1
 
 
+def test_a_copy_of_an_operation_stands_behind_it_and_is_selected(programmed, idle):
+    document, before = programmed.document, programmed.document.session
+    document.selection.select_operation("op-04")
+    programmed.registry.run("edit.copy")
+    idle(programmed)
+    order = [o.id for o in document.session.process.operations]
+    assert order[order.index("op-04") + 1] == "op-04-copy"
+    assert document.selection.current.id == "op-04-copy"
+    assert programmed.docks.process.item("op-04-copy").isSelected()
+    # Of the copy alone, by its own entry of the menu, one more is made of the same.
+    menu = programmed.docks.process.menu(document.operation("op-04-copy"))
+    next(a for a in menu.actions() if a.text() == "Copy op-04-copy").trigger()
+    idle(programmed)
+    assert document.selection.current.id == "op-04-copy-2"
+    for _ in range(2):
+        programmed.registry.run("edit.undo")
+    assert document.session is before
+
+
 def test_the_listing_shows_the_selected_operations_motions(programmed, qtbot):
     programmed.show_dock("listing")
     programmed.document.selection.select_operation("op-02")

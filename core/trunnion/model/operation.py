@@ -114,6 +114,7 @@ class Operation:
     (a tool that leans knows none); `others` the ids of further features that it machines with the same tool and data, as of equal holes.
     What a plan can be taught by: `planned_tool` names the cutter that the planner took where a person or a plan of the library has another
     one in its place, `own_choices` are the keys of the choices that these gave; `taught_data` marks cutting data of such a plan.
+    `copy_of`: the planned operation that a person copied it from; `moved` marks that a person gave it its place.
     """
 
     id: str
@@ -136,11 +137,18 @@ class Operation:
     planned_tool: str = added("", written=False)
     own_choices: tuple[str, ...] = added((), written=False)
     taught_data: bool = added(False, written=False)
+    copy_of: str = added("", written=False)
+    moved: bool = added(False, written=False)
 
     @property
     def keeps_data(self) -> bool:
         """Whether its cutting data are given, by a person or by a plan of the library, and not computed again."""
         return self.by_hand or self.taught_data
+
+    @property
+    def is_manual(self) -> bool:
+        """Whether a person made, changed or moved it."""
+        return self.by_hand or self.moved
 
     @property
     def all_features(self) -> tuple[str, ...]:

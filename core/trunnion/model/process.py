@@ -58,10 +58,17 @@ class ProcessTree:
         )
 
     def without(self, *ids: str) -> ProcessTree:
-        """Return the tree after a person deleted operations; what had to come after them need not any more."""
+        """Return the tree after a person deleted operations; what had to come after them need not any more.
+
+        Copies are made by persons alone: of these nothing is remembered.
+        """
         kept = tuple(
             replace(o, after=tuple(a for a in o.after if a not in ids))
             for o in self.operations
             if o.id not in ids
         )
-        return replace(self, operations=kept, removed=tuple(dict.fromkeys((*self.removed, *ids))))
+        copies = {o.id for o in self.operations if o.copy_of}
+        planned = (id for id in ids if id not in copies)
+        return replace(
+            self, operations=kept, removed=tuple(dict.fromkeys((*self.removed, *planned)))
+        )

@@ -24,7 +24,7 @@ from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.part_work import before_blank
 from trunnion.pipeline.step import Step
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
-from trunnion.plan.operation_change import OperationChange, with_change
+from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.report.picture_process import Ahead, Drawing, here

@@ -22,7 +22,7 @@ from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
 from trunnion.pipeline.planning.library import library_choice, library_key, routed
 from trunnion.pipeline.planning.machine import with_machine
-from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
+from trunnion.pipeline.planning.manual_edits import with_manual_features
 from trunnion.pipeline.planning.open_faces import OpenSettings, frame_and_finding
 from trunnion.pipeline.planning.scene import SessionContext
 from trunnion.pipeline.proof.posted_programs import prove_session
@@ -38,6 +38,7 @@ from trunnion.plan.cutting.optimization.settings import GeneticSettings, Optimiz
 from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.peak import overloads
 from trunnion.plan.library.settings import LibrarySettings
+from trunnion.plan.manual.manual_operations import with_manual_operations
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table

@@ -1,4 +1,4 @@
-"""The process tree: setups and their operations, reordered by drag, suppressed and deleted by menu."""
+"""The process tree: setups and their operations, reordered by drag; suppressed, copied and deleted by menu."""
 
 from __future__ import annotations
 
@@ -143,6 +143,11 @@ class ProcessDock(QWidget):
             lambda: edit(words.format(id=id), edits.with_suppressed(id, not operation.suppressed)),
         )
         menu.addAction(
+            icons.icon("copy"),
+            tr("Copy {id}").format(id=id),
+            lambda: self._document.copy_operation(id),
+        )
+        menu.addAction(
             icons.icon("delete"),
             tr("Delete {id}").format(id=id),
             lambda: edit(tr("Delete {id}").format(id=id), edits.without_operation(id)),
@@ -173,7 +178,7 @@ class ProcessDock(QWidget):
             else None
         )
         if proof is None or self._theme is None:
-            return icons.icon("by_hand" if o.by_hand else "empty")
+            return icons.icon("by_hand" if o.is_manual else "empty")
         colours = {
             Outcome.PASSED: self._theme.good,
             Outcome.REMARKS: self._theme.warning,

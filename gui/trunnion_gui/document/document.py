@@ -151,6 +151,14 @@ class Document(QObject):
             "change", label, id, {key: value}, finish=lambda state: self.keep(label, state)
         )
 
+    def copy_operation(self, id: str) -> None:
+        """Copy an operation, and select the copy."""
+        there = {o.id for o in self.session.process.operations} if self.session.process else set()
+        self.edit(tr("Copy {id}").format(id=id), edits.with_copy(id))
+        for o in self.session.process.operations if self.session.process else ():
+            if o.id not in there:
+                self.selection.select_operation(o.id)
+
     # the session
 
     def keep(

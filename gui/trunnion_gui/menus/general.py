@@ -177,6 +177,15 @@ def add_general_commands(window: WindowAccess) -> None:
         "Keep the selected operation in the tree without cutting it",
         partial(has_selected, "operation"),
     )
+    command(
+        "edit.copy",
+        "Copy the operation",
+        do.copy_selected,
+        "copy",
+        "Ctrl+Shift+D",
+        "The same work once more behind it, to be given a tool, data, settings or a place of its own",
+        partial(has_selected, "operation"),
+    )
     command("edit.none", "Select nothing", do.leave, "", "Escape", "", None)
     command(
         "run.program",

@@ -93,6 +93,12 @@ class Handlers:
                 edits.with_suppressed(operation.id, not operation.suppressed),
             )
 
+    def copy_selected(self) -> None:
+        """Copy the selected operation."""
+        operation = self._document.operation(self._document.selection.current.id)
+        if operation is not None:
+            self._document.copy_operation(operation.id)
+
     def change_theme(self) -> None:
         """Change between light and dark."""
         name = "dark" if self._window.theme.name == "light" else "light"

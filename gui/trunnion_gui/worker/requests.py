@@ -161,7 +161,7 @@ def _change(
     operation: str,
     values: dict[str, Value],
 ) -> SessionState:
-    from trunnion.plan.operation_change import OperationChange
+    from trunnion.plan.manual.operation_change import OperationChange
 
     change = choose(OperationChange, values)
     return state_of(engine, engine.with_operation_change(session, operation, change))
@@ -204,7 +204,7 @@ def _deviation(engine: Any, progress: Progress, _send_event: SendEvent, session:
 def _settings(
     engine: Any, _progress: Progress, _send_event: SendEvent
 ) -> dict[str, tuple[SettingsGroup, ...]]:
-    from trunnion.plan.operation_change import OperationChange
+    from trunnion.plan.manual.operation_change import OperationChange
 
     return {
         step: tuple(

@@ -15,7 +15,7 @@ from trunnion.findings import BadCall, BadInput
 from trunnion.pipeline import Engine
 from trunnion.pipeline.planning.library import add_to_library, library_choice, matches
 from trunnion.plan.freeform.keys import SCALLOP
-from trunnion.plan.operation_change import OperationChange
+from trunnion.plan.manual.operation_change import OperationChange
 from trunnion.settings import choose
 from trunnion.shop.library import PlanLibrary
 

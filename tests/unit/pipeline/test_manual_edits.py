@@ -10,7 +10,8 @@ from programs import process_tree, recognition
 from trunnion import registry
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.pipeline.engine import Engine
-from trunnion.pipeline.planning.manual_edits import with_manual_features, with_manual_operations
+from trunnion.pipeline.planning.manual_edits import with_manual_features
+from trunnion.plan.manual.manual_operations import with_manual_operations
 from trunnion_resources import sample
 
 FOUND = replace(

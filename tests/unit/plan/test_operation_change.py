@@ -17,7 +17,7 @@ from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
 from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.power import cutting_power
 from trunnion.plan.freeform.keys import EARLIER
-from trunnion.plan.operation_change import OperationChange, with_change
+from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 

@@ -15,7 +15,7 @@ from trunnion.model.setup import Setup
 from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
 from trunnion.plan.library.follow import followed, refusal
 from trunnion.plan.library.teach import taught_plan
-from trunnion.plan.operation_change import OperationChange, with_change
+from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.settings import choose
 from trunnion.shop import TypicalPlan, load_shop
 from trunnion_gui import edits
@@ -292,3 +292,27 @@ def test_a_taught_cutter_fits_where_the_planners_choice_leaves_it_space(
     here = replace(made("side", "boss-01", D12), tool=longer(*now), faces=(1,) if finishes else ())
     reason = refusal(longer(*taught), longer(*planned), here)
     assert words in reason and bool(words) == bool(reason)
+
+
+def test_a_copy_is_not_taught_and_the_note_says_so():
+    plain = planned()
+    copied = session_edit(plain, edits.with_copy("side-boss-02"))
+    result = taught_plan(
+        copied,
+        RECOGNITION,
+        BASE,
+        SIGNATURE,
+        name="A",
+        date="",
+        part="",
+        part_digest="",
+        settings={},
+    )
+    assert [(f.code, f.where) for f in result.findings] == [
+        ("library.not-taught", ("side-boss-02-copy",))
+    ]
+    assert "copied by hand" in result.findings[0].text
+    original = taught_plan(
+        plain, RECOGNITION, BASE, SIGNATURE, name="A", date="", part="", part_digest="", settings={}
+    )
+    assert result.plan == original.plan

@@ -12,6 +12,8 @@ from trunnion.findings import BadCall, BadInput
 from trunnion.model.session import Session
 from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.model.tool import Tool
+from trunnion.plan.manual.operation_copy import with_copy
+from trunnion.plan.manual.operation_order import with_operation_before
 from trunnion.settings import unwritten
 from trunnion.store import xml
 from trunnion.store.features import features_xml, write_features
@@ -93,6 +95,23 @@ def test_what_a_program_gives_of_speed_and_feed_comes_back_and_is_not_written_wh
         again = from_xml(text, Session, members)
         assert again.process.operations == kept.process.operations
         assert (text.find(".//spindle-mode") is None) == (kept is SESSION)
+
+
+def test_copies_and_places_by_hand_are_written_where_there_are_any(tmp_path):
+    tree = programs.process_tree()
+    assert not any(word in process_xml(tree, SESSION.part) for word in (b" copy-of=", b" moved="))
+    copied, name = with_copy(tree, "face-02")
+    moved = with_operation_before(copied, name, "face-02")
+    (made,) = [
+        e
+        for e in etree.fromstring(process_xml(moved, SESSION.part)).findall("operation")
+        if e.get("copy-of")
+    ]
+    assert (made.get("id"), made.get("copy-of"), made.get("moved")) == (name, "face-02", "true")
+    members = Members()
+    session = replace(SESSION, process=moved)
+    again = from_xml(to_xml(session, Session, "session", members), Session, members)
+    assert again.process.operations == moved.operations
 
 
 @pytest.mark.parametrize("form", FORMS)

@@ -1,11 +1,14 @@
-"""`trunnion change`: one operation's tool, spindle speed or feed set by hand, kept in a project that other commands go on with."""
+"""`trunnion change`: one operation set, copied, moved or taken out by hand, kept in a project that other commands go on with."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from trunnion import registry
 from trunnion.cli.common import (
     check_output,
     exit_code,
@@ -16,8 +19,14 @@ from trunnion.cli.common import (
     show_json,
 )
 from trunnion.cli.planning.operations import operation_dict, operation_table
-from trunnion.findings import BadCall
+from trunnion.findings import BadCall, BadInput
+from trunnion.registry import STRATEGIES
 from trunnion.settings import choose
+
+if TYPE_CHECKING:
+    from trunnion.model.process import ProcessTree
+    from trunnion.model.session import Session
+    from trunnion.pipeline import Engine
 
 
 def add(commands: Any) -> None:
@@ -25,16 +34,39 @@ def add(commands: Any) -> None:
     made = part_command(
         commands,
         "change",
-        "set one operation's tool, spindle speed or feed by hand",
-        "Sets one operation's tool, spindle speed or feed by hand and saves the project; planning leaves what was set alone, "
-        "and `trunnion program PROJECT` cuts and proves it like any plan.",
+        "set, copy, move or take out one operation by hand",
+        "Sets one operation's tool, speed, feed or own settings by hand, copies it, moves it or takes it out, and saves the project; "
+        "planning leaves what was done alone, and `trunnion program PROJECT` cuts and proves it like any plan.",
     )
     made.add_argument(
         "--operation", required=True, metavar="ID", help="as `trunnion route` names it"
     )
+    made.add_argument(
+        "--copy",
+        action="store_true",
+        help="copy it: the same work once more behind it; all else that is given is for the copy",
+    )
     made.add_argument("--tool", default="", metavar="NAME", help="a cutter of the catalogue")
     made.add_argument("--spindle", type=float, default=0.0, metavar="N", help="1/min")
     made.add_argument("--feed", type=float, default=0.0, metavar="VF", help="mm/min")
+    made.add_argument(
+        "--own",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="a setting of its strategy for this operation alone; may be repeated",
+    )
+    position = made.add_mutually_exclusive_group()
+    position.add_argument(
+        "--before", default="", metavar="ID", help="move it in front of another one of its setup"
+    )
+    position.add_argument("--last", action="store_true", help="move it to its setup's end")
+    state = made.add_mutually_exclusive_group()
+    state.add_argument(
+        "--suppress", action="store_true", help="keep it in the plan without cutting it"
+    )
+    state.add_argument("--resume", action="store_true", help="cut a suppressed one again")
+    state.add_argument("--delete", action="store_true", help="take it out of the plan")
     made.add_argument(
         "--out", type=Path, required=True, metavar="FILE", help="project to write (.trunnion)"
     )
@@ -43,27 +75,87 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Change the operation, save the project and print the operation."""
-    from trunnion.plan.operation_change import OperationChange
     from trunnion.store.project_file import PROJECT_SUFFIX
 
-    given = {"tool": options.tool, "spindle": options.spindle, "feed": options.feed}
-    change = choose(OperationChange, {f"operation.{name}": v for name, v in given.items()})
-    if not any(given.values()):
-        raise BadCall("nothing to change: give --tool, --spindle or --feed")
+    own = _own_words(options.own)
+    data = (options.tool, options.spindle, options.feed, own, options.before, options.last)
+    if not any((*data, options.copy, options.suppress, options.resume, options.delete)):
+        raise BadCall(
+            "nothing to change: give --tool, --spindle, --feed, --own, --copy, --before, --last, --suppress, --resume or --delete"
+        )
+    if options.delete and any((*data, options.copy)):
+        raise BadCall("--delete takes the operation out: nothing else can be changed of it")
     if options.out.suffix.lower() != PROJECT_SUFFIX:
         raise BadCall(f"--out wants a file that ends in {PROJECT_SUFFIX}, not {options.out}")
     check_output(options.out.parent)
     engine, session = open_session(options, "optimize")
-    session = engine.with_operation_change(session, options.operation, change)
+    session, id = _changed(options, own, engine, session)
     # The peak of the load follows the new data.
     session = engine.run(session, "optimize", progress_of(options))
     engine.save(session, options.out)
     assert session.process is not None
-    changed = session.process.operation(options.operation)
+    changed = next((o for o in session.process.operations if o.id == id), None)
     if options.json:
-        show_json({"file": str(options.out), "operation": operation_dict(changed)})
+        shown = operation_dict(changed) if changed else None
+        show_json({"file": str(options.out), "operation": shown})
+    elif changed is None:
+        print(f"{id} is taken out")
     else:
         print(operation_table([changed]))
         print("; ".join((*changed.rules, *changed.data.rules)))
     show_findings(options, session.findings())
     return exit_code(session.findings())
+
+
+def _own_words(words: list[str]) -> dict[str, str]:
+    pairs = {}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if not equals or not key.strip():
+            raise BadCall(f"--own wants KEY=VALUE, not {word}")
+        pairs[key.strip()] = value.strip()
+    return pairs
+
+
+def _changed(
+    options: argparse.Namespace, own: Mapping[str, str], engine: Engine, session: Session
+) -> tuple[Session, str]:
+    """Return the session with all that the options say of an operation, and the id of the one that they say it of."""
+    from trunnion.plan.manual.operation_change import OperationChange
+    from trunnion.plan.manual.operation_copy import with_copy
+    from trunnion.plan.manual.operation_order import with_operation_before
+    from trunnion.plan.manual.operation_state import with_own_choices, with_suppressed
+
+    process, id = _process(session), options.operation
+    _check_known(process, id)
+    if options.delete:
+        return replace(session, process=process.without(id)), id
+    if options.copy:
+        process, id = with_copy(process, id)
+    if own:
+        group = registry.get(STRATEGIES, process.operation(id).strategy).settings
+        process = with_own_choices(process, id, own, group)
+    if options.suppress or options.resume:
+        process = with_suppressed(process, id, options.suppress)
+    if options.before:
+        _check_known(process, options.before)
+    if options.before or options.last:
+        process = with_operation_before(process, id, options.before or None)
+    session = replace(session, process=process)
+    given = {"tool": options.tool, "spindle": options.spindle, "feed": options.feed}
+    if any(given.values()):
+        change = choose(OperationChange, {f"operation.{name}": v for name, v in given.items()})
+        session = engine.with_operation_change(session, id, change)
+    return session, id
+
+
+def _process(session: Session) -> ProcessTree:
+    assert session.process is not None
+    return session.process
+
+
+def _check_known(process: ProcessTree, id: str) -> None:
+    if id not in {o.id for o in process.operations}:
+        raise BadInput(
+            f"there is no operation {id}; known: {', '.join(o.id for o in process.operations)}"
+        )

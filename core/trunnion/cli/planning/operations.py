@@ -27,6 +27,8 @@ def operation_dict(operation: Operation) -> dict[str, Any]:
         "rules": list(operation.rules),
         "after": list(operation.after),
         "by_hand": operation.by_hand,
+        **({"copy_of": operation.copy_of} if operation.copy_of else {}),
+        **({"moved": True} if operation.moved else {}),
         "suppressed": operation.suppressed,
         **({"avoid": [asdict(b) for b in operation.avoid]} if operation.avoid else {}),
     }

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from trunnion.findings import face_tags, info
 from trunnion.model.feature import Feature, Recognition
-from trunnion.model.process import ProcessTree
 from trunnion.recognize.contract import exclusive_kinds
 
 
@@ -123,15 +122,6 @@ def free_id(kind: str, taken: set[str]) -> str:
     while f"{kind}-{number:02}" in taken:
         number += 1
     return f"{kind}-{number:02}"
-
-
-def with_manual_operations(before: ProcessTree | None, made: ProcessTree) -> ProcessTree:
-    """Return the plan that was made with the operations that a person changed as they were, and without those that were deleted."""
-    if before is None:
-        return made
-    by_hand = {o.id: o for o in before.operations if o.by_hand}
-    kept = replace(made, operations=tuple(by_hand.get(o.id, o) for o in made.operations))
-    return kept.without(*before.removed) if before.removed else kept
 
 
 def _claims_most(feature: Feature, taken: Iterable[set[int]]) -> bool:

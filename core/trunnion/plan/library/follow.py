@@ -19,7 +19,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.cutting.optimize import recomputed
 from trunnion.plan.library.teach import kinds_of
-from trunnion.plan.operation_change import OperationChange, with_speeds
+from trunnion.plan.manual.operation_change import OperationChange, with_speeds
 from trunnion.plan.repair.contract import numbered
 from trunnion.plan.repair.tool_change import ROUGH_FORMS, SHAPES, with_cutter
 from trunnion.plan.tool_choice import depth_reached

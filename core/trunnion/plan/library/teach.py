@@ -1,7 +1,7 @@
 """What a finished process teaches: its stages in the order of work, its cutters, and what a person changed.
 
-What cannot be carried over to another part (one operation among several of its kind that was changed, deleted or moved) is named in
-notes, never dropped in silence.
+What cannot be carried over to another part (copies, and one operation among several of its kind that was changed, deleted or moved) is
+named in notes, never dropped in silence.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from trunnion.findings import Finding, remark
 from trunnion.model.feature import Recognition
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.operation_change import BY_HAND, FEED_RULE, SPINDLE_RULE
+from trunnion.plan.manual.operation_change import BY_HAND, FEED_RULE, SPINDLE_RULE
 from trunnion.settings import Value
 from trunnion.shop import Stage, TypicalPlan
 from trunnion.shop.library import PartSignature, TaughtOperation, TaughtPlan
@@ -50,14 +50,18 @@ def taught_plan(
     `settings` are those of the session that the plan keeps, by full key; `date` is taken as given.
     """
     kinds = kinds_of(recognition)
-    active = [o for o in process.operations if not o.suppressed]
+    active = [o for o in process.operations if not o.suppressed and not o.copy_of]
     groups: dict[Key, list[Operation]] = defaultdict(list)
     for o in active:
         groups[o.group, kinds.get(o.feature, ""), o.planned_tool or o.tool.name].append(o)
     operations = tuple(
         _taught(key, groups[key]) for key in sorted(groups, key=lambda k: _rank(k, base))
     )
-    notes = [*_exceptions(groups, operations), *_single_suppressions(process, kinds)]
+    notes = [
+        *_exceptions(groups, operations),
+        *_single_suppressions(process, kinds),
+        *_copies(process),
+    ]
     return TaughtResult(
         plan=TaughtPlan(
             name=name,
@@ -209,7 +213,7 @@ def _is_moved_before(first: str, second: str, process: ProcessTree) -> bool:
         if rows[first][-1] > rows[second][0]:
             return False
         both = rows[first] + rows[second]
-        moved = moved or any(process.operations[n].by_hand for n in both)
+        moved = moved or any(process.operations[n].is_manual for n in both)
     return moved
 
 
@@ -241,6 +245,11 @@ def _single_suppressions(process: ProcessTree, kinds: Mapping[str, str]) -> list
         if o.suppressed and (o.group, kinds.get(o.feature, "")) in cut
     ]
     return [_not_taught("suppressed while others of their kind are cut", names)] if names else []
+
+
+def _copies(process: ProcessTree) -> list[Finding]:
+    names = [o.id for o in process.operations if o.copy_of]
+    return [_not_taught("copied by hand", names)] if names else []
 
 
 def _not_taught(why: str, names: Sequence[str]) -> Finding:
