@@ -12,6 +12,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.plan.manual.operation_copy import with_copy as copied
+from trunnion.plan.manual.operation_copy import with_copy_on as copied_on
 from trunnion.plan.manual.operation_order import with_operation_before as moved_before
 from trunnion.plan.manual.operation_state import with_suppressed as suppressed_in
 from trunnion.settings import Value
@@ -193,6 +194,16 @@ def with_operation_before(id: str, before: str | None) -> Edit:
 def with_copy(id: str) -> Edit:
     """Return the edit that copies an operation: the same work once more, right behind it."""
     return _with_process(lambda tree: copied(tree, id)[0])
+
+
+def with_copy_on(id: str, feature: str) -> Edit:
+    """Return the edit that copies an operation to another feature of the same kind."""
+
+    def edit(session: Session) -> Session:
+        made, _ = copied_on(_process(session), id, feature, recognition_of(session))
+        return replace(session, process=made)
+
+    return edit
 
 
 def _with_operation(id: str, change: Callable[[Operation], Operation]) -> Edit:

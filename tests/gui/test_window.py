@@ -471,6 +471,21 @@ def test_a_copy_of_an_operation_stands_behind_it_and_is_selected(programmed, idl
     assert document.session is before
 
 
+def test_an_operation_is_copied_to_another_feature_by_the_menu(programmed, idle):
+    document, before = programmed.document, programmed.document.session
+    id = next(o.id for o in before.process.operations if o.feature == "pocket-01")
+    menu = programmed.docks.process.menu(document.operation(id))
+    (onto,) = (a.menu() for a in menu.actions() if a.text() == f"Copy {id} to")
+    assert [a.text() for a in onto.actions()] == ["pocket-02", "pocket-03"]
+    onto.actions()[1].trigger()
+    idle(programmed)
+    copy = document.operation(document.selection.current.id)
+    assert (copy.feature, copy.copy_of) == ("pocket-03", id)
+    assert programmed.docks.process.item(copy.id).text(1) == "pocket-03"
+    programmed.registry.run("edit.undo")
+    assert document.session is before
+
+
 def test_the_listing_shows_the_selected_operations_motions(programmed, qtbot):
     programmed.show_dock("listing")
     programmed.document.selection.select_operation("op-02")

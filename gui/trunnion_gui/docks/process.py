@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QBrush, QColor, QDropEvent, QFont, QIcon
 from PySide6.QtWidgets import (
@@ -16,6 +18,7 @@ from PySide6.QtWidgets import (
 from trunnion.model.operation import Operation
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
+from trunnion.plan.manual.operation_copy import copy_targets
 from trunnion_gui import edits
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.i18n import tr
@@ -147,12 +150,22 @@ class ProcessDock(QWidget):
             tr("Copy {id}").format(id=id),
             lambda: self._document.copy_operation(id),
         )
+        self._add_copies_on(menu, operation)
         menu.addAction(
             icons.icon("delete"),
             tr("Delete {id}").format(id=id),
             lambda: edit(tr("Delete {id}").format(id=id), edits.without_operation(id)),
         )
         return menu
+
+    def _add_copies_on(self, menu: QMenu, operation: Operation) -> None:
+        """Add the features that an operation can be copied to, where there are any."""
+        found = self._document.shown.recognition
+        features = copy_targets(operation, found) if found is not None else ()
+        if features:
+            onto = menu.addMenu(tr("Copy {id} to").format(id=operation.id))
+            for id in features:
+                onto.addAction(id, partial(self._document.copy_operation, operation.id, id))
 
     def _add(self, top: QTreeWidgetItem, o: Operation, session: Session) -> None:
         item = QTreeWidgetItem(

@@ -151,10 +151,11 @@ class Document(QObject):
             "change", label, id, {key: value}, finish=lambda state: self.keep(label, state)
         )
 
-    def copy_operation(self, id: str) -> None:
-        """Copy an operation, and select the copy."""
+    def copy_operation(self, id: str, feature: str = "") -> None:
+        """Copy an operation, to another feature where one is given, and select the copy."""
         there = {o.id for o in self.session.process.operations} if self.session.process else set()
-        self.edit(tr("Copy {id}").format(id=id), edits.with_copy(id))
+        label = tr("Copy {id}").format(id=f"{id} → {feature}" if feature else id)
+        self.edit(label, edits.with_copy_on(id, feature) if feature else edits.with_copy(id))
         for o in self.session.process.operations if self.session.process else ():
             if o.id not in there:
                 self.selection.select_operation(o.id)

@@ -95,6 +95,8 @@ def test_what_is_taken_out_stays_out(project, capsys):
         (["--own", "colour=red"], "has no setting colour; it has "),
         (["--before", "nothing"], "there is no operation nothing; known: "),
         (["--copy", "--tool", "nothing"], "there is no tool nothing"),
+        (["--on", "pocket-01"], "--on is for a copy"),
+        (["--copy", "--on", "nothing"], "there is no feature nothing; known: "),
     ],
 )
 def test_what_can_not_be_is_one_line_and_nothing_is_written(project, capsys, tmp_path, words, said):

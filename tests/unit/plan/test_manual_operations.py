@@ -12,10 +12,11 @@ from flat_parts import operation
 from programs import FLAT_16
 from trunnion.findings import BadInput, Refused
 from trunnion.geometry.frame import WORLD
+from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.plan.manual.manual_operations import with_manual_operations
-from trunnion.plan.manual.operation_copy import with_copy
+from trunnion.plan.manual.operation_copy import copy_targets, with_copy, with_copy_on
 from trunnion.plan.manual.operation_order import out_of_order, with_operation_before
 from trunnion.plan.manual.operation_state import with_own_choices, with_suppressed
 from trunnion.toolpath.plane.rough import RoughSettings
@@ -105,6 +106,65 @@ def test_own_settings_are_parsed_and_checked_by_the_strategy():
         with_own_choices(PLANNED, "rough", {"depth_of_everything": "1"}, group)
     with pytest.raises(BadInput, match="slot_feed"):
         with_own_choices(PLANNED, "rough", {"plane.rough.slot_feed": "fast"}, group)
+
+
+def faces(*rows: tuple[str, int]) -> tuple[FaceRole, ...]:
+    return tuple(FaceRole(role=role, face=face) for role, face in rows)
+
+
+FOUND = Recognition(
+    family="panel",
+    features=(
+        Feature(id="pocket-01", kind="pocket", faces=faces(("floor", 1), ("wall", 2), ("wall", 3))),
+        Feature(id="pocket-02", kind="pocket", faces=faces(("floor", 4), ("wall", 5))),
+        Feature(id="rib-01", kind="rib", faces=faces(("top", 6))),
+    ),
+)
+
+
+def on(process: ProcessTree, id: str, **values) -> ProcessTree:
+    return process.with_operation(replace(process.operation(id), **values))
+
+
+TWO_POCKETS = tree(
+    ("rough-pocket-01", "S1", ()),
+    ("rough-pocket-02", "S2", ()),
+    ("wall-pocket-01", "S1", ("rough-pocket-01",)),
+)
+TWO_POCKETS = on(TWO_POCKETS, "rough-pocket-02", feature="pocket-02", direction=(0.0, 1.0, 0.0))
+TWO_POCKETS = on(TWO_POCKETS, "wall-pocket-01", faces=(2, 3), kind="wall")
+
+
+def test_a_copy_on_another_feature_has_its_faces_its_side_and_needs_what_is_done_there():
+    copied, name = with_copy_on(TWO_POCKETS, "wall-pocket-01", "pocket-02", FOUND)
+    made = copied.operation(name)
+    assert (name, made.feature, made.faces) == ("wall-pocket-02-copy", "pocket-02", (5,))
+    assert (made.setup, made.direction) == ("S2", (0.0, 1.0, 0.0))
+    assert (made.after, made.copy_of) == (("rough-pocket-02",), "wall-pocket-01")
+    assert ids(copied) == ["rough-pocket-01", "rough-pocket-02", name, "wall-pocket-01"]
+    # Back again it is one more of the first kind; nothing of that is lost in a new route.
+    back, second = with_copy_on(copied, name, "pocket-01", FOUND)
+    assert (second, back.operation(second).faces) == ("wall-pocket-01-copy", (2, 3))
+    assert back.operation(second).after == ("rough-pocket-01",)
+    assert ids(with_manual_operations(back, TWO_POCKETS)) == ids(back)
+
+
+def test_a_copy_goes_to_another_feature_of_the_same_kind_alone():
+    assert copy_targets(TWO_POCKETS.operation("wall-pocket-01"), FOUND) == ("pocket-02",)
+    for feature in ("rib-01", "pocket-01"):
+        with pytest.raises(BadInput, match=r"only to another feature of its kind: pocket-02"):
+            with_copy_on(TWO_POCKETS, "wall-pocket-01", feature, FOUND)
+    with pytest.raises(BadInput, match="there is no feature boss-01; known: pocket-01"):
+        with_copy_on(TWO_POCKETS, "wall-pocket-01", "boss-01", FOUND)
+
+
+def test_from_where_a_feature_without_operations_is_reached_is_not_guessed():
+    alone = TWO_POCKETS.without("rough-pocket-02")
+    copied, name = with_copy_on(alone, "wall-pocket-01", "pocket-02", FOUND)
+    assert copied.operation(name).after == ()
+    tilted = on(alone, "wall-pocket-01", direction=(0.0, 1.0, 0.0))
+    with pytest.raises(Refused, match="pocket-02: no operation says from which side"):
+        with_copy_on(tilted, "wall-pocket-01", "pocket-02", FOUND)
 
 
 def test_a_new_route_keeps_copies_and_places():

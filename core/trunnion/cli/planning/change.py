@@ -46,6 +46,12 @@ def add(commands: Any) -> None:
         action="store_true",
         help="copy it: the same work once more behind it; all else that is given is for the copy",
     )
+    made.add_argument(
+        "--on",
+        default="",
+        metavar="FEATURE",
+        help="with --copy: put the copy on another feature of the same kind",
+    )
     made.add_argument("--tool", default="", metavar="NAME", help="a cutter of the catalogue")
     made.add_argument("--spindle", type=float, default=0.0, metavar="N", help="1/min")
     made.add_argument("--feed", type=float, default=0.0, metavar="VF", help="mm/min")
@@ -79,6 +85,8 @@ def run(options: argparse.Namespace) -> int:
 
     own = _own_words(options.own)
     data = (options.tool, options.spindle, options.feed, own, options.before, options.last)
+    if options.on and not options.copy:
+        raise BadCall("--on is for a copy: give --copy too")
     if not any((*data, options.copy, options.suppress, options.resume, options.delete)):
         raise BadCall(
             "nothing to change: give --tool, --spindle, --feed, --own, --copy, --before, --last, --suppress, --resume or --delete"
@@ -122,7 +130,7 @@ def _changed(
 ) -> tuple[Session, str]:
     """Return the session with all that the options say of an operation, and the id of the one that they say it of."""
     from trunnion.plan.manual.operation_change import OperationChange
-    from trunnion.plan.manual.operation_copy import with_copy
+    from trunnion.plan.manual.operation_copy import with_copy, with_copy_on
     from trunnion.plan.manual.operation_order import with_operation_before
     from trunnion.plan.manual.operation_state import with_own_choices, with_suppressed
 
@@ -130,7 +138,10 @@ def _changed(
     _check_known(process, id)
     if options.delete:
         return replace(session, process=process.without(id)), id
-    if options.copy:
+    if options.on:
+        assert session.recognition is not None
+        process, id = with_copy_on(process, id, options.on, session.recognition)
+    elif options.copy:
         process, id = with_copy(process, id)
     if own:
         group = registry.get(STRATEGIES, process.operation(id).strategy).settings

@@ -59,7 +59,8 @@ def _reordered(
 def _in_manual_order(
     operations: Sequence[Operation], before: ProcessTree, copies: set[str], applied: set[str]
 ) -> list[Operation]:
-    """Return the operations with those `applied` behind what they were behind, and all other copies behind their originals.
+    """Return the operations with those `applied` behind what they were behind, and all other copies behind their originals and what
+    they need.
 
     Taken in the order they had, each one finds what was right before it already in its place, so that what can be all as it was is.
     """
@@ -70,7 +71,9 @@ def _in_manual_order(
             earlier = before.operations[:n]
         elif old.id in copies:
             taken = replace(old, moved=False)
-            earlier = tuple(o for o in ordered if old.copy_of in (o.id, o.copy_of))
+            earlier = tuple(
+                o for o in ordered if old.copy_of in (o.id, o.copy_of) or o.id in old.after
+            )
         else:
             continue
         ordered = [o for o in ordered if o.id != old.id]
