@@ -109,4 +109,4 @@ def roughed(stock, skin, left=0.5):
     fine = lower_side(bull(2.0, 1.0)())
     heights = skin.drop.drop(centres, fine, float(skin.points[:, 2].min())) + left
     heights = np.minimum(stock.heights, heights.reshape(stock.heights.shape))
-    return replace(stock, heights=heights, digest="roughed")
+    return replace(stock, field=heights, digest="roughed")

@@ -181,6 +181,9 @@ class Operation:
 class OperationPath:
     """The toolpath of one operation, the areas it leaves (in words) and the digest of what it was made from.
 
+    `stock_box` is where the stock was looked at for it, mm: least x and y, greatest x and y, or nothing for all of it; `stock_key` the
+    digest of the stock there.
+
     `power` kW, `rate` cm3/min and `chip` mm are the highest that its own motions come to, by what they take off the stock as it is planned:
     0 where that isn't known, of a tool that leans.
     """
@@ -192,3 +195,5 @@ class OperationPath:
     power: float = added(0.0)
     rate: float = added(0.0)
     chip: float = added(0.0)
+    stock_box: tuple[float, ...] = added((), written=False)
+    stock_key: str = added("", written=False)

@@ -25,6 +25,7 @@ from trunnion.toolpath.motion.ground_links import over_ground
 from trunnion.toolpath.motion.reorient import clearance_sphere, led_away, moved_over
 from trunnion.toolpath.motion.rolled import laid_flat, rolled
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.stock_reads import StockReads
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -36,6 +37,7 @@ class PathJob:
     driven: OperationDrive
     stock: PlanningStock
     scene: SetupScene
+    leans: bool
 
     @staticmethod
     def of(
@@ -58,7 +60,12 @@ class PathJob:
         rolling, sides = driven.rolling, scene.sides
         stock = sides.over_ground(rolling) if rolling else sides.seen(driven.setup, driven.cell)
         return PathJob(
-            operation=operation, settings=settings, driven=driven, stock=stock, scene=scene
+            operation=operation,
+            settings=settings,
+            driven=driven,
+            stock=stock,
+            scene=scene,
+            leans=needs.leans,
         )
 
     @property
@@ -68,25 +75,28 @@ class PathJob:
 
     def kept(self, session: Session) -> OperationPath | None:
         """Return the toolpath that a session has, where all it depends on is the same; or the empty one of what finds nothing to cut."""
-        key = self._key()
-        if self.is_empty:
-            return self._with_drive_findings(empty_path(self.operation, key))
-        kept = session.path_of(self.operation.id)
-        return self._with_drive_findings(kept) if kept is not None and kept.key == key else None
+        key, kept = self._key(), session.path_of(self.operation.id)
+        is_same = kept is not None and kept.key == key
+        if kept and is_same and kept.stock_key == self.stock.digest_in(kept.stock_box):
+            # It has the findings of its drive, which need not be made again.
+            return kept
+        return self._with_drive_findings(self._empty(key)) if self.is_empty else None
 
     def planned(self, progress: Progress) -> Planned:
         """Return the strategy's path in the cutting frame; raise `Refused` where it finds none."""
         operation, driven = self.operation, self.driven
+        # What stands round a leaning tool is asked of all fields together.
+        stock = self.stock if self.leans else self.stock.recorded()
         made: Planned = registry.get(STRATEGIES, operation.strategy)(
             driven.drive,
             operation.cutter,
             operation.data,
-            self.stock,
+            stock,
             driven.setup,
             self.settings,
             progress,
         )
-        return made
+        return replace(made, stock_box=stock.box_read())
 
     def path(self, planned: Planned) -> OperationPath:
         """Return the toolpath in the setup's frame, led on from where the tool is now."""
@@ -110,7 +120,18 @@ class PathJob:
                 path=path,
                 findings=tuple(planned.findings),
                 key=self._key(),
+                stock_box=planned.stock_box,
+                stock_key=self.stock.digest_in(planned.stock_box),
             )
+        )
+
+    def _empty(self, key: str) -> OperationPath:
+        """Return the empty path of a drive that is empty wherever stock stands."""
+        nowhere = StockReads().box(self.stock.corner)
+        return replace(
+            empty_path(self.operation, key),
+            stock_box=nowhere,
+            stock_key=self.stock.digest_in(nowhere),
         )
 
     def cut(self, made: OperationPath, progress: Progress) -> bool:
@@ -139,10 +160,10 @@ class PathJob:
         return digest(
             operation.strategy,
             driven.identity,
-            operation.tool,
+            # Its number is that of the order of use, which other operations change.
+            replace(operation.tool, number=0),
             operation.data,
             self.settings,
-            self.stock.digest,
             driven.setup,
             self.scene.before(operation.cutter),
         )

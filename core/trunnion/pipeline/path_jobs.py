@@ -89,7 +89,7 @@ class PathJobs:
         leans, may_be_kept = self._leans(operation), self._session.path_of(operation.id) is not None
         if may_be_kept:
             self.take_over()
-        begun = self._prepared(operation, progress)
+        begun = self._prepared(operation, progress, now=not may_be_kept)
         if begun.prepared is not None and not may_be_kept and not begun.prepared.is_empty:
             begun = (self._in_copy if leans and more and copies() else _made)(begun)
         self._begun.append(begun)
@@ -107,7 +107,7 @@ class PathJobs:
                 begun = self._begun.popleft()
                 if changed and begun.prepared is not None:
                     # A tool that was to lean stood upright: what was begun after it knew another stock.
-                    begun = self._prepared(begun.operation, begun.progress)
+                    begun = self._prepared(begun.operation, begun.progress, now=False)
                 changed |= self._take(begun)
         finally:
             self._is_taking_over = False
@@ -125,11 +125,14 @@ class PathJobs:
         )
         return bool(strategy.tool_axis(settings) is ToolAxis.LEANING)
 
-    def _prepared(self, operation: Operation, progress: Progress) -> _Begun:
+    def _prepared(self, operation: Operation, progress: Progress, *, now: bool) -> _Begun:
+        """Return an operation with what its path depends on; with `now` its drive is made at once, as the path will be too."""
         try:
             prepared = PathJob.of(
                 self._session, self._planner, self._scene, operation, progress.part(0.0, DRIVEN)
             )
+            if now:
+                prepared.driven.lazy.made()
         except Refused as reason:
             return _Begun(
                 operation=operation, progress=progress, prepared=None, make=_raising(reason)

@@ -161,10 +161,31 @@ class RollingGround:
     upper: RollingGround | None = None
 
 
+class LazyDrive:
+    """A drive that is made when it is first looked at, and findings on what was cut off it then.
+
+    When one operation is changed most paths of a plan stay, and what tells their drives from others is known without making them.
+    """
+
+    def __init__(self, make: Callable[[], tuple[Drive, tuple[Finding, ...]]]) -> None:
+        self._make, self._made = make, list[tuple[Drive, tuple[Finding, ...]]]()
+
+    @staticmethod
+    def of(drive: Drive, findings: tuple[Finding, ...] = ()) -> LazyDrive:
+        """Return a drive that is there already."""
+        return LazyDrive(lambda: (drive, findings))
+
+    def made(self) -> tuple[Drive, tuple[Finding, ...]]:
+        """Return the drive and the findings; raise `Refused` where the part does not bear the feature out."""
+        if not self._made:
+            self._made.append(self._make())
+        return self._made[0]
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OperationDrive:
     """The drive of an operation, the setup whose frame it lies in (the cutting frame), and `identity`, what a digest is made of that tells
-    the drive from others: the drive itself, or its digest, with all else that its queries depend on. `findings` say what was cut off it.
+    the drive from others: the drive itself, or its digest, with all else that its queries depend on.
 
     A drive over a `rolling` ground lies in the plane of its development instead, and so does the path until it is rolled onto it. `cell`:
     side (mm) of the cells that the stock is known in, where it need not be as fine as usual (0). `allowance`: mm that a leaning tool leaves
@@ -172,12 +193,40 @@ class OperationDrive:
     """
 
     setup: Setup
-    drive: Drive
+    lazy: LazyDrive
     identity: Any
-    findings: tuple[Finding, ...] = ()
     rolling: RollingGround | None = None
     cell: float = 0.0
     allowance: float = 0.0
+
+    @staticmethod
+    def of(
+        *,
+        setup: Setup,
+        drive: Drive,
+        identity: Any,
+        findings: tuple[Finding, ...] = (),
+        rolling: RollingGround | None = None,
+        cell: float = 0.0,
+    ) -> OperationDrive:
+        """Return an operation's drive that is there already."""
+        return OperationDrive(
+            setup=setup,
+            lazy=LazyDrive.of(drive, findings),
+            identity=identity,
+            rolling=rolling,
+            cell=cell,
+        )
+
+    @property
+    def drive(self) -> Drive:
+        """The drive itself, made when it is first looked at; raises `Refused` where the part does not bear the feature out."""
+        return self.lazy.made()[0]
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What was cut off the drive."""
+        return self.lazy.made()[1]
 
 
 class Planner(Protocol):
@@ -257,31 +306,37 @@ def driven_by(
             f"{operation.id}: {operation.strategy} is driven by a {needs.drive.__name__}, which is not made for {planner.noun}; "
             "choose another strategy"
         )
-    driven = _off_fixtures(makers[needs.drive](operation, needs, scene, progress), operation, scene)
-    return driven if needs.leans or not operation.avoid else _off_boxes(driven, operation)
+    driven = makers[needs.drive](operation, needs, scene, progress)
+    if needs.drive is PlaneDrive and scene.fixtures:
+        driven = _off_fixtures(driven, operation, scene)
+    return driven if needs.leans or not operation.avoid else _off_boxes(driven, operation, needs)
 
 
 def _off_fixtures(driven: OperationDrive, operation: Operation, scene: Scene) -> OperationDrive:
-    if not (scene.fixtures and isinstance(driven.drive, PlaneDrive)):
-        return driven
-    setup = driven.setup
+    setup, plane = driven.setup, driven.drive
+    assert isinstance(plane, PlaneDrive)
     fixtures = scene.once(
         ("fixtures", digest(setup.frame)),
         lambda: tuple(PlanFixture.of(f, setup, scene.blank) for f in scene.fixtures),
     )
-    drive, findings = off_fixtures(driven.drive, operation.cutter, setup, fixtures)
-    return replace(driven, drive=drive, identity=(driven.identity, drive), findings=findings)
+    drive, findings = off_fixtures(plane, operation.cutter, setup, fixtures)
+    return replace(
+        driven,
+        lazy=LazyDrive.of(drive, (*driven.findings, *findings)),
+        identity=(driven.identity, drive),
+    )
 
 
-def _off_boxes(driven: OperationDrive, operation: Operation) -> OperationDrive:
+def _off_boxes(driven: OperationDrive, operation: Operation, needs: DriveNeeds) -> OperationDrive:
     setup = replace(driven.setup, avoid=operation.avoid)
-    if not isinstance(driven.drive, PlaneDrive):
+    if needs.drive is not PlaneDrive:
         return replace(driven, setup=setup)
-    drive, findings = off_boxes(driven.drive, operation.cutter, setup, operation.avoid)
+    plane = driven.drive
+    assert isinstance(plane, PlaneDrive)
+    drive, findings = off_boxes(plane, operation.cutter, setup, operation.avoid)
     return replace(
         driven,
         setup=setup,
-        drive=drive,
+        lazy=LazyDrive.of(drive, (*driven.findings, *findings)),
         identity=(driven.identity, drive),
-        findings=(*driven.findings, *findings),
     )

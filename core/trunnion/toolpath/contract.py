@@ -32,16 +32,19 @@ from trunnion.plan.contract import ToolAxis
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.stock_reads import EVERYWHERE, Box
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Planned:
-    """The motions of one operation and what a person should know of them."""
+    """The motions of one operation and what a person should know of them; `stock_box` (mm) is where the stock was looked at for them,
+    nothing for all of it."""
 
     path: Toolpath = EMPTY
     findings: tuple[Finding, ...] = ()
+    stock_box: Box = EVERYWHERE
 
 
 Meets = Callable[[Tool, CuttingData, Any, Operation | None], Engagement]

@@ -184,7 +184,7 @@ def _plane(operation, needs, scene, progress):
         "sections", lambda: SetupSpace.of(part, scene.recognition, scene.blank, scene.setup)
     )
     drive = drive_of(operation, scene.process, space)
-    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)
+    return OperationDrive.of(setup=scene.setup, drive=drive, identity=drive)
 
 
 def _bevel(operation, needs, scene, progress):
@@ -197,4 +197,4 @@ def _bevel(operation, needs, scene, progress):
         top=float(foot[2]) + sizes["height"],
         angle=sizes["angle"],
     )
-    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)
+    return OperationDrive.of(setup=scene.setup, drive=drive, identity=drive)

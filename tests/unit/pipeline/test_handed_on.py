@@ -97,11 +97,13 @@ def test_a_change_in_the_first_setup_is_one_in_the_second(both_sides):
     first = session.process.of_setup("S1")[-1]
     without = session.process.of_setup("S1")[:-1] + session.process.of_setup("S2")
     changed = replace(session, process=replace(session.process, operations=without))
-    keys = {p.operation: p.key for p in session.paths}
     after = make_paths(changed, engine.context_of(session), NO_PROGRESS)
-    own = {o.id for o in session.process.of_setup("S2")}
     assert first.id not in {p.operation for p in after}
-    assert all(p.key != keys[p.operation] for p in after if p.operation in own)
+    assert planned_stock(engine, changed).digest != planned_stock(engine, session).digest
+    anew = make_paths(replace(changed, paths=()), engine.context_of(session), NO_PROGRESS)
+    for path, made in zip(after, anew, strict=True):
+        assert (path.operation, path.stock_key) == (made.operation, made.stock_key)
+        assert np.array_equal(path.path.position, made.path.position), path.operation
     states = engine.states(changed)
     assert states["toolpath"] == states["verify"] == "stale"
 

@@ -64,7 +64,7 @@ def test_no_higher_place_is_in_a_low_area(seed, z):
 @settings(max_examples=10, deadline=None)
 def test_the_stock_over_a_pocket_is_found_from_the_cells_about_it(seed, z):
     heights = 2.0 * field(seed, 8.0, (160, 120))
-    stock = PlanningStock(heights=heights, corner=np.array([-20.0, -15.0]), cell=0.25, digest="")
+    stock = PlanningStock(field=heights, corner=np.array([-20.0, -15.0]), cell=0.25, digest="")
     everywhere = np.array([-30.0, -30.0, 0.0]), np.array([30.0, 30.0, 0.0])
     pocket = np.array([-6.0, -4.0, 0.0]), np.array([9.0, 7.0, 0.0])
     inside = Region.rectangle(-6.0, -4.0, 9.0, 7.0)

@@ -119,7 +119,7 @@ def test_a_plate_under_what_was_roughed_from_above_is_cut_from_the_side_layer_by
     uncut = PlanningStock.of(BLANK, SETUP)
     heights = np.full_like(uncut.heights, 0.0)
     heights[:3] = uncut.heights[:3]
-    drive = plane_drive_of(made, space_of_hill(), replace(uncut, heights=heights), NO_PROGRESS)
+    drive = plane_drive_of(made, space_of_hill(), replace(uncut, field=heights), NO_PROGRESS)
     plate = Region.rectangle(0.0, 0.0, 1.5, 60.0)
     groups = {level.top for level in drive.levels}
     for top in groups:

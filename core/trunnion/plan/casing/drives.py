@@ -59,7 +59,7 @@ def plane_driven(
     if operation.kind not in (ROUGH, FLOOR):
         space = space_from(operation.direction, tolerance.CHORD, scene, progress)
         drive = land_drive(operation, space, (), float(space.high[2]), progress)
-        return OperationDrive(
+        return OperationDrive.of(
             setup=space.setup, drive=drive, identity=drive, cell=stock_cell(scene.blank)
         )
     ground = ground_in(scene, operation.feature, progress)
@@ -72,7 +72,7 @@ def plane_driven(
         drive = floor_over(operation, ground, before, number(operation, STOCK), union_all(areas))
     rolling = rolling_over(operation.feature, _chord(operation), scene, progress)
     setup = flat_setup(scene.setup, ground)
-    return OperationDrive(
+    return OperationDrive.of(
         setup=setup, drive=drive, identity=(drive, ground.development), rolling=rolling
     )
 
@@ -102,7 +102,7 @@ def gaps_driven(
 ) -> OperationDrive:
     """Return the passes of interrupted turning over a bottom."""
     drive = gaps_in(scene, operation, progress)
-    return OperationDrive(
+    return OperationDrive.of(
         setup=scene.setup, drive=drive, identity=drive, cell=stock_cell(scene.blank)
     )
 

@@ -111,7 +111,7 @@ def revolved_driven(
         part=shapely.get_coordinates(shapely.get_exterior_ring(part))[:-1],
         to_cut=float(stock.difference(part).area),
     )
-    return OperationDrive(setup=scene.setup, drive=drive, identity=(drive, blank))
+    return OperationDrive.of(setup=scene.setup, drive=drive, identity=(drive, blank))
 
 
 def after_turning(

@@ -15,6 +15,7 @@ from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import Region
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
+from trunnion.model.keep_out import KeepOutBox
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
@@ -152,8 +153,7 @@ class SurfaceSpace:
         height, allowance, extension = (
             number(operation, key) for key in (SCALLOP, ALLOWANCE, EXTENSION)
         )
-        known = OVERHANG in operation.choices
-        thickness = number(operation, OVERHANG) if known else LEFTOVER * operation.data.depth
+        thickness = _thickness(operation)
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if within is not None:
             skin, faces = parted_within(skin, faces, within)
@@ -178,31 +178,10 @@ class SurfaceSpace:
             )
         if fixtures:
             skin = with_fixtures(skin, fixtures)
-        boxes, avoided = () if needs.leans else operation.avoid, None
+        boxes, avoided = _avoided(operation, needs), None
         if boxes:
             skin, faces, avoided = off_boxes(skin, faces, operation.cutter, boxes, height, progress)
         notices = ((kept_off, refused), (excluded, avoided))
-        identity = digest(
-            self.part.digest,
-            self.part.solid,
-            operation.feature,
-            operation.kind,
-            operation.faces,
-            self.frame,
-            self.blank,
-            self.setup.clearance,
-            self.skin.bound,
-            len(self.skin.triangles),
-            height,
-            allowance,
-            earlier,
-            upright,
-            thickness,
-            needs.leans,
-            *((boxes,) if boxes else ()),
-            *((extension,) if extension else ()),
-            *((within,) if within is not None else ()),
-        )
         return SurfaceDrive(
             feature=operation.feature,
             kind=operation.kind,
@@ -215,7 +194,7 @@ class SurfaceSpace:
             clearance=self.setup.clearance,
             allowance=allowance,
             height=height,
-            digest=identity,
+            digest=self.drive_digest(operation, needs, earlier, upright, within),
             earlier=earlier,
             query_for=query_for,
             remaining_stock=remaining_stock,
@@ -227,12 +206,55 @@ class SurfaceSpace:
             extension=extension,
         )
 
+    def drive_digest(
+        self,
+        operation: Operation,
+        needs: DriveNeeds,
+        earlier: Tool | None = None,
+        upright: Tool | None = None,
+        within: Region | None = None,
+    ) -> str:
+        """Return a digest of all that `drive_of` makes a drive from, but for the fixtures and the operation's own tool and settings."""
+        boxes, extension = _avoided(operation, needs), number(operation, EXTENSION)
+        return digest(
+            self.part.digest,
+            self.part.solid,
+            operation.feature,
+            operation.kind,
+            operation.faces,
+            self.frame,
+            self.blank,
+            self.setup.clearance,
+            self.skin.bound,
+            len(self.skin.triangles),
+            number(operation, SCALLOP),
+            number(operation, ALLOWANCE),
+            earlier,
+            upright,
+            _thickness(operation),
+            needs.leans,
+            *((boxes,) if boxes else ()),
+            *((extension,) if extension else ()),
+            *((within,) if within is not None else ()),
+        )
+
     def _finding(self, operation: Operation, refused: KeepOutArea, notice: Notice) -> Finding:
         at = self.frame.to_world(refused.at)
         where = (operation.feature, *face_tags(operation.faces))
         return notice(
             operation.feature, f"{refused.area:.0f} mm2", refused.by, operation.cutter, at, where
         )
+
+
+def _thickness(operation: Operation) -> float:
+    """Return what (mm) operations before leave on faces that hang over."""
+    known = OVERHANG in operation.choices
+    return number(operation, OVERHANG) if known else LEFTOVER * operation.data.depth
+
+
+def _avoided(operation: Operation, needs: DriveNeeds) -> tuple[KeepOutBox, ...]:
+    """Return the boxes that an operation avoids: a leaning tool knows none."""
+    return () if needs.leans else operation.avoid
 
 
 def skin_around(skin: Skin, tags: tuple[int, ...], tools: Sequence[Tool], more: float) -> Skin:

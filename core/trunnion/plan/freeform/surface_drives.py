@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from trunnion import tolerance
+from trunnion.findings import Finding
 from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool, rotating
-from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
+from trunnion.plan.contract import Drive, DriveNeeds, LazyDrive, OperationDrive, Scene
 from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, UPRIGHT_EARLIER, number
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.setups.frames import Direction
@@ -48,14 +49,18 @@ def surface_driven(
         # What leaves an allowance waits for nothing: paths of leaning tools are made beside each other.
         remaining_stock = scene.remaining_stock(space.frame, leaning=allowance <= 0.0)
         cut = remaining_stock.cut
-    drive = space.drive_of(
-        operation, needs, earlier, around, remaining_stock, upright, progress, within
-    )
+
+    def made() -> tuple[Drive, tuple[Finding, ...]]:
+        drive = space.drive_of(
+            operation, needs, earlier, around, remaining_stock, upright, progress, within
+        )
+        return drive, drive.findings
+
+    identity = space.drive_digest(operation, needs, earlier, upright, within)
     return OperationDrive(
         setup=space.setup,
-        drive=drive,
-        identity=(drive.digest, scene.fixtures, *((cut,) if cut else ())),
-        findings=drive.findings,
+        lazy=LazyDrive(made),
+        identity=(identity, scene.fixtures, *((cut,) if cut else ())),
         allowance=allowance,
     )
 

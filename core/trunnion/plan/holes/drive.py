@@ -60,7 +60,7 @@ def holes_driven(
     findings."""
     setup = cutting_setup(scene.setup, operation.direction, scene.blank)
     drive, findings = hole_drive(operation, scene.recognition, scene.process, setup.frame)
-    return OperationDrive(setup=setup, drive=drive, identity=drive, findings=findings)
+    return OperationDrive.of(setup=setup, drive=drive, identity=drive, findings=findings)
 
 
 def hole_drive(

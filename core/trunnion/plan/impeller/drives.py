@@ -106,7 +106,7 @@ def channel_driven(
             CutSpace.of(laid.path, tool).moved(scene.setup.frame, rotor) for tool, laid in before
         ),
     )
-    return OperationDrive(setup=setup, drive=drive, identity=(identity, scene.fixtures))
+    return OperationDrive.of(setup=setup, drive=drive, identity=(identity, scene.fixtures))
 
 
 def _balls(scene: Scene) -> tuple[tuple[Tool, OperationPath], ...]:

@@ -87,7 +87,7 @@ def _plane_driven(
         drive = freeform_drive(operation, pocket, scene, progress)
     else:
         drive = drive_of(operation, scene.process, space)
-    return OperationDrive(setup=scene.setup, drive=drive, identity=drive)
+    return OperationDrive.of(setup=scene.setup, drive=drive, identity=drive)
 
 
 def _surface_driven(

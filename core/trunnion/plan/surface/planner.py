@@ -87,4 +87,4 @@ def _plane_driven(
 ) -> OperationDrive:
     space = space_from(operation.direction, tolerance.CHORD, scene, progress)
     drive = plane_drive_of(operation, space, scene.stock(space.setup), progress, scene.process)
-    return OperationDrive(setup=space.setup, drive=drive, identity=drive)
+    return OperationDrive.of(setup=space.setup, drive=drive, identity=drive)

@@ -34,7 +34,7 @@ LINK = 0.4
 @dataclass(frozen=True, slots=True, eq=False)
 class PassTrimming:
     """Trims the passes of one layer: the cells (nx, ny) of the stock that are to go, the height over which what is counts, and how deep
-    in mm the cutter's side has to enter it to count."""
+    in mm the cutter's side has to enter it to count. The heights of these cells alone are looked at."""
 
     wanted: Bools
     z: float
@@ -67,7 +67,7 @@ class PassTrimming:
     def area(self, builder: PathBuilder, curve: Curve) -> float:
         """Return the area in mm2 of the stock that a pass would meet."""
         stock = builder.stock()
-        rows = np.argwhere(self.wanted & (stock.heights > self.z))
+        rows = np.argwhere(self.wanted & (stock.field > self.z))
         if not len(rows):
             return 0.0
         away = curve.distance(stock.corner + (rows + 0.5) * stock.cell)
@@ -84,10 +84,10 @@ class PassTrimming:
             + radius * np.sin(angle)[:, None] * left[:, None]
         )
         cell = np.floor((rim - stock.corner) / stock.cell).astype(np.int64)
-        shape = stock.heights.shape
+        shape = stock.field.shape
         inside = ((cell >= 0) & (cell < shape)).all(axis=2)
         column, row = (np.clip(cell[..., k], 0, shape[k] - 1) for k in (0, 1))
-        met: Bools = inside & self.wanted[column, row] & (stock.heights[column, row] > self.z)
+        met: Bools = inside & self.wanted[column, row] & (stock.field[column, row] > self.z)
         return np.asarray(met.any(axis=1), dtype=np.bool_)
 
 

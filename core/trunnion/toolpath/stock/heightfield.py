@@ -6,6 +6,7 @@ The field errs on the side of material everywhere: it begins as the blank's top 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from hashlib import sha256
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +24,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
+from trunnion.toolpath.stock.stock_reads import EVERYWHERE, Box, StockReads
 
 CELL = 0.5
 """Side of a cell in mm where the blank is small; a larger blank has larger cells."""
@@ -39,20 +41,22 @@ LARGEST_CELL = 10.0
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class PlanningStock:
-    """Heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,).
+    """A `field` of heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,).
 
     `digest` is a short stable digest of the uncut field and everything that was cut from it. A `centred` field errs to neither side:
     a cell is lowered where the cutter covers its middle. It is what loads are taken from, never clearances. `widths` is the share of a
     cutter's radius that it clears up to the top of the stock: less than 1 over ground laid flat, where a straight body gets narrower
-    upwards.
+    upwards. `reads` takes down where it is looked at (`recorded`), which for one who takes the `heights` is everywhere; `field` alone is
+    for places that were looked at before.
     """
 
-    heights: Floats
+    field: Floats
     corner: Floats
     cell: float
     digest: str
     centred: bool = False
     widths: float = 1.0
+    reads: StockReads | None = None
 
     @staticmethod
     def of(blank: Blank, setup: Setup, cell: float = CELL) -> PlanningStock:
@@ -72,7 +76,7 @@ class PlanningStock:
         key = digest(shape, high[2].item(), corner, cell)
         if (heights < high[2]).any():
             key = digest(key, heights)
-        return PlanningStock(heights=_fixed(heights), corner=corner, cell=cell, digest=key)
+        return PlanningStock(field=_fixed(heights), corner=corner, cell=cell, digest=key)
 
     @staticmethod
     def centred_in(blank: Blank, frame: Frame, cell: float = CELL) -> PlanningStock:
@@ -87,7 +91,7 @@ class PlanningStock:
             blank.frame.local_direction(frame.z),
         )
         return PlanningStock(
-            heights=(low[2] + met.tops(0.0)).reshape(shape),
+            field=(low[2] + met.tops(0.0)).reshape(shape),
             corner=_fixed(low[:2]),
             cell=cell,
             digest="",
@@ -105,11 +109,67 @@ class PlanningStock:
         )
         if tool.full_width_height > 0.0:
             cut = digest(cut, tool.full_width_height)
-        return replace(made, heights=_fixed(made.heights), digest=cut)
+        return replace(made, field=_fixed(made.field), digest=cut)
+
+    def recorded(self) -> PlanningStock:
+        """Return the same stock, which takes down from now on where it is looked at; so do working copies of it."""
+        return replace(self, reads=StockReads())
+
+    def box_read(self) -> Box:
+        """Return the box in which a recorded stock was looked at."""
+        return EVERYWHERE if self.reads is None else self.reads.box(self.corner)
+
+    @property
+    def heights(self) -> Floats:
+        """The heights (nx, ny) mm of all cells, to be looked at anywhere."""
+        if self.reads is not None:
+            self.reads.add_everything()
+        return self.field
+
+    def digest_in(self, box: Box) -> str:
+        """Return a short digest of the heights within a box, and of where the cells are."""
+        if box == EVERYWHERE:
+            return self.digest
+        first, last = self._cells(np.array(box[:2]), np.array(box[2:]))
+        some = self.field[first[0] : last[0], first[1] : last[1]]
+        return digest(
+            self.corner,
+            self.cell,
+            self.field.shape,
+            self.widths,
+            box,
+            sha256(some.tobytes()).hexdigest(),
+        )
+
+    def cropped(self, low: Floats, high: Floats) -> PlanningStock:
+        """Return the part of the stock with all cells that a box from `low` to `high` (2,) touches, at least one; it may be looked at
+        anywhere."""
+        first, last = self._cells(low, high)
+        first = np.clip(first, 0, np.array(self.field.shape) - 1)
+        last = np.maximum(last, first + 1)
+        corner = self.corner + first * self.cell
+        self._look(corner, self.corner + last * self.cell)
+        return replace(
+            self,
+            field=self.field[first[0] : last[0], first[1] : last[1]],
+            corner=_fixed(corner),
+            digest="",
+            reads=None,
+        )
+
+    def _cells(self, low: Floats, high: Floats) -> tuple[Ints, Ints]:
+        """Return the first cell (2,) that a box touches, and the first (2,) behind it."""
+        first = np.clip(np.floor((low - self.corner) / self.cell), 0, self.field.shape)
+        last = np.clip(np.floor((high - self.corner) / self.cell) + 1, 0, self.field.shape)
+        return first.astype(np.int64), last.astype(np.int64)
+
+    def _look(self, low: Floats, high: Floats) -> None:
+        if self.reads is not None:
+            self.reads.add(low, high)
 
     def working(self) -> PlanningStock:
         """Return a copy that `zmap_cut` may change; its digest stays that of the stock it was taken from."""
-        return replace(self, heights=self.heights.copy())
+        return replace(self, field=self.field.copy())
 
     def lower(self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS) -> Floats:
         """Take the feed moves of a path off this very field, which must be a `working` copy; return the volume (n,) in mm3 that each
@@ -124,12 +184,16 @@ class PlanningStock:
         if tool.full_width_height > 0.0:
             starts, ends = _as_flat(starts, ends, tool.full_width_height)
         radius, gone = self.widths * (tool.radius - error), np.empty((len(starts), 2))
+        if len(starts):
+            ends_in_plan = np.vstack([starts, ends])[:, :2]
+            around = tool.radius + 2.0 * self.cell
+            self._look(ends_in_plan.min(axis=0) - around, ends_in_plan.max(axis=0) + around)
         # A cell's furthest corner counts: with a cutter as much wider its middle does.
         wider = heightfield.HALF_DIAGONAL * self.cell if self.centred else 0.0
         for first in progress.each(range(0, len(starts), MOVES)):
             some = slice(first, first + MOVES)
             heightfield.zmap_cut(
-                self.heights,
+                self.field,
                 self.corner[0],
                 self.corner[1],
                 self.cell,
@@ -148,9 +212,11 @@ class PlanningStock:
     def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
         """Return the greatest height that a disc may touch on its path from `start` to `end` (2,), or -inf over nothing."""
         a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
+        around = radius + 2.0 * self.cell
+        self._look(np.minimum(a, b) - around, np.maximum(a, b) + around)
         return float(
             heightfield.zmap_highest(
-                self.heights, self.corner[0], self.corner[1], self.cell, a, b, radius
+                self.field, self.corner[0], self.corner[1], self.cell, a, b, radius
             )
         )
 
@@ -172,7 +238,7 @@ class PlanningStock:
 
     def cells_above(self, z: float, area: Region) -> Bools:
         """Return which cells (nx, ny) are higher than `z` and have their centre in an area."""
-        found = np.zeros(self.heights.shape, dtype=np.bool_)
+        found = np.zeros(self.field.shape, dtype=np.bool_)
         cells = np.floor((self.positions_above(z, area) - self.corner) / self.cell).astype(np.int64)
         found[cells[:, 0], cells[:, 1]] = True
         return found
@@ -181,16 +247,17 @@ class PlanningStock:
         if not area:
             return np.zeros((0, 2))
         low, high = area.box()
+        self._look(low - self.cell, high + self.cell)
         first = np.maximum(np.floor((low - self.corner) / self.cell), 0).astype(int)
-        last = np.minimum(np.ceil((high - self.corner) / self.cell), self.heights.shape).astype(int)
+        last = np.minimum(np.ceil((high - self.corner) / self.cell), self.field.shape).astype(int)
         if (last <= first).any():
             return np.zeros((0, 2))
-        rows = np.argwhere(self.heights[first[0] : last[0], first[1] : last[1]] > z)
+        rows = np.argwhere(self.field[first[0] : last[0], first[1] : last[1]] > z)
         return self.corner + (rows + first + 0.5) * self.cell
 
     def box(self) -> tuple[Floats, Floats]:
         """Return the lowest and highest corner (2,) of the field."""
-        return self.corner, self.corner + self.cell * np.array(self.heights.shape)
+        return self.corner, self.corner + self.cell * np.array(self.field.shape)
 
 
 ARC_CHORD = 0.02

@@ -160,7 +160,7 @@ def _lowered(
         heights[rows] -= step
         rows = rows[heights[rows] > lowest]
     kept = np.maximum(heights, lowest).reshape(stock.heights.shape)
-    return replace(stock, heights=_fixed(kept), digest=digest(stock.digest, other.digest))
+    return replace(stock, field=_fixed(kept), digest=digest(stock.digest, other.digest))
 
 
 def _lowered_over(
@@ -186,7 +186,7 @@ def _lowered_over(
         heights[rows] -= step
         rows = rows[heights[rows] > lowest]
     kept = np.maximum(heights, lowest).reshape(stock.heights.shape)
-    return replace(stock, heights=_fixed(kept), digest=digest(stock.digest, other.digest))
+    return replace(stock, field=_fixed(kept), digest=digest(stock.digest, other.digest))
 
 
 def _over(ground: RollingGround) -> PlanningStock:
@@ -203,7 +203,7 @@ def _over(ground: RollingGround) -> PlanningStock:
     row = np.clip(np.round((along - v[0]) / (v[1] - v[0])).astype(np.int64), 0, len(v) - 1)
     heights = highest[row].reshape(shape)
     return PlanningStock(
-        heights=_fixed(heights),
+        field=_fixed(heights),
         corner=_fixed(ground.low.copy()),
         cell=cell,
         digest=digest(ground.development, shape, cell, ground.profile, ground.widths),

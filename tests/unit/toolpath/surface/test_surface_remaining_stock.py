@@ -48,7 +48,7 @@ def cleared(depth, past):
     heights = stock.heights.copy()
     rows = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell > past
     heights[rows] = depth
-    return replace(stock, heights=heights)
+    return replace(stock, field=heights)
 
 
 def straight(start, end, axis=UPRIGHT):

@@ -45,7 +45,7 @@ def trench(wide, deep=20.0):
     y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
     heights = stock.heights.copy()
     heights[:, np.abs(y - 15.0) < 0.5 * wide] = 0.3
-    return drive, setup, replace(stock, heights=heights)
+    return drive, setup, replace(stock, field=heights)
 
 
 def along(y, z=0.0, start=2.0, end=28.0):
@@ -74,7 +74,7 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
     x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
     heights[x > 20.0] = 20.0
     kept, findings = without_stock_contact(
-        [along(15.0)], drive, SLENDER, replace(stock, heights=heights), 0.5
+        [along(15.0)], drive, SLENDER, replace(stock, field=heights), 0.5
     )
     assert not kept and findings
     split = Pass(
@@ -83,7 +83,7 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
         normal=np.tile(UPRIGHT, (53, 1)),
     )
     (kept,), findings = without_stock_contact(
-        [split], drive, SLENDER, replace(stock, heights=heights), 0.5
+        [split], drive, SLENDER, replace(stock, field=heights), 0.5
     )
     # Its shank of 2 mm comes as near as the rim of 1 mm that isn't told from stock lets it.
     assert kept.tip[0, 0] == 2.0 and 18.0 < kept.tip[-1, 0] < 20.0
@@ -116,7 +116,7 @@ def test_what_is_left_on_a_wall_is_told_from_the_rim_that_the_field_keeps_there(
     y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
     heights = np.where((y < 15.0 + thick) & (y > -5.0), 9.3, 0.3) + np.zeros(stock.heights.shape)
     kept, findings = without_stock_contact(
-        [along(15.0 + off)], drive, SLENDER, replace(stock, heights=heights), 0.5
+        [along(15.0 + off)], drive, SLENDER, replace(stock, field=heights), 0.5
     )
     assert bool(kept) is clear and bool(findings) is not clear
 
@@ -126,7 +126,7 @@ def test_a_ridge_away_from_walls_is_stock_though_it_is_narrow():
     y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
     heights = stock.heights.copy()
     heights[:, np.abs(y - 15.0) < 0.9] = 12.0
-    stock = replace(stock, heights=heights)
+    stock = replace(stock, field=heights)
     assert not without_stock_contact([along(15.0)], drive, SLENDER, stock, 0.5)[0]
     assert without_stock_contact([along(18.0)], drive, SLENDER, stock, 0.5)[0]
 

@@ -44,8 +44,9 @@ def without_stock_contact(
     rows = np.array(tool.profile()).reshape(-1, 4)
     if not len(passes) or not len(rows) or not all(p.upright for p in passes):
         return list(passes), ()
-    field = _lowest_within(stock.heights, EDGE)
     tips, owner, segment = _spaced(passes, stock.cell)
+    stock = _around(stock, tips, rows, tool)
+    field = _lowest_within(stock.heights, EDGE)
     doubtful = ~_is_free(field, stock, tips, rows)
     if not doubtful.any():
         return list(passes), ()
@@ -72,6 +73,15 @@ def without_stock_contact(
             _lower(field, stock, piece, tool)
         kept += pieces
     return kept, _findings(left * stepover, over, drive, tool)
+
+
+def _around(stock: PlanningStock, tips: Floats, rows: Floats, tool: Tool) -> PlanningStock:
+    """Return of the stock what a tool at tips (n, 3) may come near to, and the cells beside that are looked at for it."""
+    reach = max(float(rows[:, [1, 3]].max()), tool.radius) + (2 * RIM + 4) * stock.cell
+    # A tip beside the field counts at the nearest cell of it.
+    low, high = stock.box()
+    plan = np.clip(tips[:, :2], low, high)
+    return stock.cropped(plan.min(axis=0) - reach, plan.max(axis=0) + reach)
 
 
 def _lowest_within(heights: Floats, cells: int) -> Floats:
