@@ -11,6 +11,7 @@ from subjects import PLANNERS, own, until
 from trunnion.pipeline import Engine
 from trunnion.pipeline.operation_path import PathJob
 from trunnion.pipeline.toolpaths import make_paths
+from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.manual.operation_change import OperationChange
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
@@ -97,3 +98,16 @@ def test_after_a_change_only_what_depends_on_it_is_made_again_and_nothing_is_mis
         assert (one.operation, one.key, one.findings) == (two.operation, two.key, two.findings)
         for a, b in zip(columns(one.path), columns(two.path), strict=True):
             np.testing.assert_array_equal(a, b, err_msg=one.operation)
+
+
+def test_drives_of_paths_that_stay_are_not_made(monkeypatch):
+    engine, session = own("surface")[0], until("surface", "toolpath")
+
+    def made(*_, **__):
+        raise AssertionError("nobody looks at this drive")
+
+    monkeypatch.setattr(SurfaceSpace, "drive_of", made)
+    assert any(o.strategy.startswith("surface.") for o in session.process.operations)
+    again = make_paths(session, engine.context, NO_PROGRESS)
+    assert [p.key for p in again] == [p.key for p in session.paths]
+    assert all(a.path is b.path for a, b in zip(again, session.paths, strict=True))
