@@ -106,11 +106,16 @@ def check_output(folder: Path) -> None:
 
 def words_of(options: argparse.Namespace) -> dict[str, str]:
     """Return the settings given with `--set` by key."""
+    return pairs_of(options.words, "--set")
+
+
+def pairs_of(words: Iterable[str], option: str) -> dict[str, str]:
+    """Return what an option gives as KEY=VALUE, by key; raise `BadCall` for other words."""
     pairs = {}
-    for word in options.words:
+    for word in words:
         key, equals, value = word.partition("=")
         if not equals or not key.strip():
-            raise BadCall(f"--set wants KEY=VALUE, not {word}")
+            raise BadCall(f"{option} wants KEY=VALUE, not {word}")
         pairs[key.strip()] = value.strip()
     return pairs
 

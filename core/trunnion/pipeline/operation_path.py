@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from trunnion import registry
-from trunnion.findings import Finding
 from trunnion.geometry.frame import Frame
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import Operation, OperationPath
@@ -25,7 +23,6 @@ from trunnion.toolpath.motion.ground_links import over_ground
 from trunnion.toolpath.motion.reorient import clearance_sphere, led_away, moved_over
 from trunnion.toolpath.motion.rolled import laid_flat, rolled
 from trunnion.toolpath.stock.heightfield import PlanningStock
-from trunnion.toolpath.stock.stock_reads import StockReads
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -76,8 +73,11 @@ class PathJob:
     def kept(self, session: Session) -> OperationPath | None:
         """Return the toolpath that a session has, where all it depends on is the same; or the empty one of what finds nothing to cut."""
         key, kept = self._key(), session.path_of(self.operation.id)
-        is_same = kept is not None and kept.key == key
-        if kept and is_same and kept.stock_key == self.stock.digest_in(kept.stock_box):
+        if (
+            kept is not None
+            and kept.key == key
+            and kept.stock_key == self.stock.digest_in(kept.stock_box)
+        ):
             # It has the findings of its drive, which need not be made again.
             return kept
         return self._with_drive_findings(self._empty(key)) if self.is_empty else None
@@ -127,7 +127,7 @@ class PathJob:
 
     def _empty(self, key: str) -> OperationPath:
         """Return the empty path of a drive that is empty wherever stock stands."""
-        nowhere = StockReads().box(self.stock.corner)
+        nowhere = self.stock.recorded().box_read()
         return replace(
             empty_path(self.operation, key),
             stock_box=nowhere,
@@ -171,13 +171,7 @@ class PathJob:
     def _with_drive_findings(self, made: OperationPath) -> OperationPath:
         if not self.driven.findings:
             return made
-        return replace(made, findings=_with(self.driven.findings, made.findings))
-
-
-def _with(first: Sequence[Finding], others: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return findings once each: those of a path that was kept hold those of its drive already."""
-    codes = {f.code for f in first}
-    return (*first, *(f for f in others if f.code not in codes))
+        return replace(made, findings=(*self.driven.findings, *made.findings))
 
 
 def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:

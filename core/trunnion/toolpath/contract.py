@@ -32,7 +32,7 @@ from trunnion.plan.contract import ToolAxis
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.stock.heightfield import PlanningStock
-from trunnion.toolpath.stock.stock_reads import EVERYWHERE, Box
+from trunnion.toolpath.stock.stock_reads import EVERYWHERE, StockBox
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -44,7 +44,7 @@ class Planned:
 
     path: Toolpath = EMPTY
     findings: tuple[Finding, ...] = ()
-    stock_box: Box = EVERYWHERE
+    stock_box: StockBox = EVERYWHERE
 
 
 Meets = Callable[[Tool, CuttingData, Any, Operation | None], Engagement]

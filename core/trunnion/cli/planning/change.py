@@ -13,13 +13,14 @@ from trunnion.cli.common import (
     check_output,
     exit_code,
     open_session,
+    pairs_of,
     part_command,
     progress_of,
     show_findings,
     show_json,
 )
 from trunnion.cli.planning.operations import operation_dict, operation_table
-from trunnion.findings import BadCall, BadInput
+from trunnion.findings import BadCall
 from trunnion.registry import STRATEGIES
 from trunnion.settings import choose
 
@@ -83,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
     """Change the operation, save the project and print the operation."""
     from trunnion.store.project_file import PROJECT_SUFFIX
 
-    own = _own_words(options.own)
+    own = pairs_of(options.own, "--own")
     data = (options.tool, options.spindle, options.feed, own, options.before, options.last)
     if options.on and not options.copy:
         raise BadCall("--on is for a copy: give --copy too")
@@ -115,27 +116,17 @@ def run(options: argparse.Namespace) -> int:
     return exit_code(session.findings())
 
 
-def _own_words(words: list[str]) -> dict[str, str]:
-    pairs = {}
-    for word in words:
-        key, equals, value = word.partition("=")
-        if not equals or not key.strip():
-            raise BadCall(f"--own wants KEY=VALUE, not {word}")
-        pairs[key.strip()] = value.strip()
-    return pairs
-
-
 def _changed(
     options: argparse.Namespace, own: Mapping[str, str], engine: Engine, session: Session
 ) -> tuple[Session, str]:
     """Return the session with all that the options say of an operation, and the id of the one that they say it of."""
-    from trunnion.plan.manual.operation_change import OperationChange
+    from trunnion.plan.manual.operation_change import OperationChange, check_known
     from trunnion.plan.manual.operation_copy import with_copy, with_copy_on
     from trunnion.plan.manual.operation_order import with_operation_before
     from trunnion.plan.manual.operation_state import with_own_choices, with_suppressed
 
     process, id = _process(session), options.operation
-    _check_known(process, id)
+    check_known(process, id)
     if options.delete:
         return replace(session, process=process.without(id)), id
     if options.on:
@@ -149,7 +140,7 @@ def _changed(
     if options.suppress or options.resume:
         process = with_suppressed(process, id, options.suppress)
     if options.before:
-        _check_known(process, options.before)
+        check_known(process, options.before)
     if options.before or options.last:
         process = with_operation_before(process, id, options.before or None)
     session = replace(session, process=process)
@@ -163,10 +154,3 @@ def _changed(
 def _process(session: Session) -> ProcessTree:
     assert session.process is not None
     return session.process
-
-
-def _check_known(process: ProcessTree, id: str) -> None:
-    if id not in {o.id for o in process.operations}:
-        raise BadInput(
-            f"there is no operation {id}; known: {', '.join(o.id for o in process.operations)}"
-        )

@@ -70,10 +70,7 @@ def with_change(
 
     Raises `BadInput` for an operation, a tool or a value that can't be: in one line with what would be allowed.
     """
-    if id not in {o.id for o in process.operations}:
-        raise BadInput(
-            f"there is no operation {id}; known: {', '.join(o.id for o in process.operations)}"
-        )
+    check_known(process, id)
     checked(change)
     before = process.operation(id)
     if not before.tool.rotates or before.tool.locked:
@@ -99,6 +96,14 @@ def with_change(
         return process
     data = _with_load(changed, material)
     return numbered(process.with_operation(replace(data, by_hand=True)))
+
+
+def check_known(process: ProcessTree, id: str) -> None:
+    """Raise `BadInput` where a process has no operation of an id, with those that it has."""
+    if id not in {o.id for o in process.operations}:
+        raise BadInput(
+            f"there is no operation {id}; known: {', '.join(o.id for o in process.operations)}"
+        )
 
 
 def with_speeds(

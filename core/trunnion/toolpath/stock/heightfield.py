@@ -24,7 +24,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
-from trunnion.toolpath.stock.stock_reads import EVERYWHERE, Box, StockReads
+from trunnion.toolpath.stock.stock_reads import EVERYWHERE, StockBox, StockReads
 
 CELL = 0.5
 """Side of a cell in mm where the blank is small; a larger blank has larger cells."""
@@ -115,7 +115,7 @@ class PlanningStock:
         """Return the same stock, which takes down from now on where it is looked at; so do working copies of it."""
         return replace(self, reads=StockReads())
 
-    def box_read(self) -> Box:
+    def box_read(self) -> StockBox:
         """Return the box in which a recorded stock was looked at."""
         return EVERYWHERE if self.reads is None else self.reads.box(self.corner)
 
@@ -126,7 +126,7 @@ class PlanningStock:
             self.reads.add_everything()
         return self.field
 
-    def digest_in(self, box: Box) -> str:
+    def digest_in(self, box: StockBox) -> str:
         """Return a short digest of the heights within a box, and of where the cells are."""
         if box == EVERYWHERE:
             return self.digest

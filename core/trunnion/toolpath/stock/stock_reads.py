@@ -6,9 +6,9 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 
-Box = tuple[float, ...]
+StockBox = tuple[float, ...]
 """Least x and y and greatest x and y in mm, or nothing for all there is."""
-EVERYWHERE: Box = ()
+EVERYWHERE: StockBox = ()
 
 
 class StockReads:
@@ -26,7 +26,7 @@ class StockReads:
         """Take in all of the stock."""
         self._everywhere = True
 
-    def box(self, nowhere: Floats) -> Box:
+    def box(self, nowhere: Floats) -> StockBox:
         """Return the box; where nothing was looked at an empty one at a position (2,)."""
         if self._everywhere:
             return EVERYWHERE
