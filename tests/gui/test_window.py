@@ -231,8 +231,10 @@ def test_a_click_on_a_filtered_message_still_goes_to_what_it_names(programmed):
     assert programmed.document.selection.current.id == "pocket-01"
 
 
-def test_selected_messages_are_copied_as_lines(programmed):
+def test_selected_messages_are_copied_as_lines(programmed, qtbot):
     dock = programmed.docks.messages
+    programmed.activateWindow()  # a screen without a window manager gives the keyboard to no window by itself
+    qtbot.waitUntil(programmed.isActiveWindow)
     QTest.keyClicks(dock.filter.words, "leans")
     row = next(r for r in range(dock.table.rowCount()) if not dock.table.isRowHidden(r))
     dock.table.selectRow(row)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QTimer
+from PySide6.QtGui import QPaintEvent
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 
@@ -30,6 +31,11 @@ class ScreenView(QtInteractor):
         """Draw when the event loop is back, once however often it was called."""
         if self._due is not None:
             self._due.start()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        # What lies above the view and is painted anew does not draw it before its turn.
+        if self._due is None or not self._due.isActive():
+            super().paintEvent(event)
 
     def _draw(self) -> None:
         super().render()
