@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from dataclasses import replace
 
@@ -270,6 +271,16 @@ def test_what_lies_above_the_picture_is_painted_without_drawing_it_early(recogni
     scene.view.repaint()
     assert not drawn
     qtbot.waitUntil(lambda: bool(drawn))
+
+
+@pytest.mark.skipif(
+    os.environ.get("QT_QPA_PLATFORM") == "offscreen", reason="without a screen Qt has no surface"
+)
+def test_a_closed_view_keeps_no_surface_of_qts(window, qtbot):
+    view = window.viewport.scene.view
+    qtbot.waitUntil(lambda: view._surface is not None)
+    window.close()
+    assert view._surface is None
 
 
 def test_toolpaths_are_opened_once(recognized, idle, monkeypatch):

@@ -32,6 +32,15 @@ class ScreenView(QtInteractor):
         if self._due is not None:
             self._due.start()
 
+    def close(self) -> None:
+        """Let VTK go, and pyvistaqt's wrapper of Qt's surface with it.
+
+        Qt deletes the surface with the widget. PySide isn't told, as a surface is no QObject, and takes the next object at its address for
+        it as long as the wrapper lives: an action without `triggered`, or a crash.
+        """
+        super().close()
+        self._forget_context()
+
     def paintEvent(self, event: QPaintEvent) -> None:
         # What lies above the view and is painted anew does not draw it before its turn.
         if self._due is None or not self._due.isActive():
