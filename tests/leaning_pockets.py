@@ -54,10 +54,18 @@ def mixed_space(lean: float, over: float, depth: float, corner: float) -> Any:
 
 @cache
 def mixed_block(
-    lean: float = 6.0, over: float = 5.0, depth: float = 12.0, corner: float = 8.0
+    lean: float = 6.0,
+    over: float = 5.0,
+    depth: float = 12.0,
+    corner: float = 8.0,
+    fillet: float = 0.0,
 ) -> Any:
-    """Return a block with a pocket of a wall that leans over its floor (at high x), one that leans away (low x), and two upright ones."""
-    return block().cut(mixed_space(lean, over, depth, corner)).val().wrapped
+    """Return a block with a pocket of a wall that leans over its floor (at high x), one that leans away (low x), and two upright ones;
+    fillets (0: none) at their foot."""
+    space = mixed_space(lean, over, depth, corner)
+    if fillet > 0.0:
+        space = space.faces("<Z").edges().fillet(fillet)
+    return block().cut(space).val().wrapped
 
 
 def bowl_space(radius: float, depth: float, corner: float) -> Any:

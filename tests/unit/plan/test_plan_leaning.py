@@ -30,6 +30,7 @@ from trunnion.settings import choose
 SHAPES = {
     "away": leaning_pockets.leaning_block,
     "over": leaning_pockets.mixed_block,
+    "over a fillet": partial(leaning_pockets.mixed_block, fillet=3.0),
     "bowl": leaning_pockets.bowl_block,
     "hill": leaning_pockets.hill_block,
     "bowl beside overhang": leaning_pockets.bowl_beside_overhang_block,
@@ -122,6 +123,17 @@ def test_a_floor_under_it_ends_where_its_upper_edge_is_seen_from_above() -> None
     outline = np.sort([leaning_pockets.FOOT[0] - away, leaning_pockets.FOOT[1]])
     assert np.sort(wide) == pytest.approx(outline, abs=0.01)
     assert not floor.region.minus(level.boundary.offset(1e-3))
+
+
+def test_no_cutter_goes_under_an_upper_edge_that_lies_outside_of_the_floor_over_its_fillet() -> (
+    None
+):
+    pocket, _ = pocket_of("over a fillet")
+    (floor,), (level,) = pocket.floors()
+    free = pocket.free_at(level.bottom + pocket.fillet + 0.1)
+    for area in (floor.region, level.boundary):
+        assert not area.minus(free.offset(0.02))
+    assert pocket.overhang_rims()
 
 
 def test_a_flank_goes_along_the_upper_edge_of_a_wall_that_leans_over() -> None:

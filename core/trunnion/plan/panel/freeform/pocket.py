@@ -195,8 +195,8 @@ class FreeformPocket:
         for tag in self.level:
             z = float(space.centre(tag)[2])
             outline = space.part.face_outline(space.setup.frame, tag)
-            hanging = space.hanging_over(z + tolerance.OFF_PLANE, outline)
-            own = outline.offset(self.fillet).minus(hanging)
+            covered = outline.offset(self.fillet)
+            own = covered.minus(space.hanging_over(z + tolerance.OFF_PLANE, covered))
             if own:
                 found.append(Floor(z=z, region=own, fillet=self.fillet, face=tag))
         floors = tuple(sorted(found, key=lambda f: (-f.z, f.face)))
