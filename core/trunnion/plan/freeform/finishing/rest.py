@@ -51,16 +51,16 @@ def remaining_of(
 ) -> tuple[Skin, tuple[int, ...]]:
     """Return the skin with what an upright cutter leaves of faces given tags of their own, and those tags; `height` is the scallop height
     in mm that is wanted. Of that another `upright` one gets what it isn't lifted off too, a leaning one (None) what hangs over as well."""
-    if upright is not None:
-        # Beside a wall it gets a strip as wide as their radii differ, which may lie within one triangle of a long face.
-        strip = max(earlier.corner_radius - upright.corner_radius, AROUND)
-        finest = math.sqrt(skin.areas(skin.of(tags)).sum() / MOST)
-        skin = with_shorter_edges(skin, tags, max(strip, finest), progress)
     over = lifted = _lifted_over(
         skin, earlier, lowest, height, np.inf if upright is None else -np.inf, progress
     )
     if upright is not None:
         again = _lifted_over(skin, upright, lowest, math.inf, np.inf, progress)
+        # Beside a wall it gets a strip as wide as their radii differ, which may lie within one triangle of a long face. Cutters are dropped
+        # on the few triangles that there were before.
+        strip = max(earlier.corner_radius - upright.corner_radius, AROUND)
+        finest = math.sqrt(skin.areas(skin.of(tags)).sum() / MOST)
+        skin = with_shorter_edges(skin, tags, max(strip, finest), progress)
 
         def over(position: Floats, normal: Floats) -> Floats:
             lift = lifted(position, normal)
