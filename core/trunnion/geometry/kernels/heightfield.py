@@ -119,42 +119,53 @@ def zmap_highest(
 
 @njit(cache=True, nogil=True)
 def zmap_meets(
-    heights: Floats, x0: float, y0: float, cell: float, tips: Floats, rows: Floats, met: Bools
+    heights: Floats,
+    top: float,
+    x0: float,
+    y0: float,
+    cell: float,
+    tips: Floats,
+    rows: Floats,
+    met: Bools,
 ) -> None:
-    """Fill `met` (k,) with whether a body of cones [z0, r0, z1, r1] (r, 4) over upright tips (k, 3) comes lower than a field at the
-    centre of any cell."""
-    nx, ny = heights.shape
-    widest, lowest = 0.0, np.inf
-    for r in range(len(rows)):
-        widest, lowest = max(widest, rows[r, 1], rows[r, 3]), min(lowest, rows[r, 0])
+    """Fill `met` (k,) with whether a body of cones [z0, r0, z1, r1] (r, 4) over upright tips (k, 3) comes lower than a field, which is
+    nowhere higher than `top`, at the centre of any cell."""
     for k in range(len(tips)):
         met[k] = False
-        x, y, z = tips[k, 0], tips[k, 1], tips[k, 2]
-        i0 = max(int(math.ceil((x - widest - x0) / cell - 0.5)), 0)
-        i1 = min(int(math.floor((x + widest - x0) / cell - 0.5)) + 1, nx)
-        j0 = max(int(math.ceil((y - widest - y0) / cell - 0.5)), 0)
-        j1 = min(int(math.floor((y + widest - y0) / cell - 0.5)) + 1, ny)
-        for i in range(i0, i1):
-            if met[k]:
+        for r in range(len(rows)):
+            if top - tips[k, 2] > rows[r, 0] and _cone_meets(
+                heights, x0, y0, cell, tips[k], rows[r]
+            ):
+                met[k] = True
                 break
-            px = x0 + (i + 0.5) * cell - x
-            for j in range(j0, j1):
-                above = heights[i, j] - z
-                if above <= lowest:
-                    continue
-                away = math.hypot(px, y0 + (j + 0.5) * cell - y)
-                for r in range(len(rows)):
-                    low, near, high, far = rows[r, 0], rows[r, 1], rows[r, 2], rows[r, 3]
-                    # The lowest place of the cone that far off its axis.
-                    if away >= near:
-                        if away >= far:
-                            continue
-                        low += (high - low) * (away - near) / (far - near)
-                    if above > low:
-                        met[k] = True
-                        break
-                if met[k]:
-                    break
+
+
+@njit(cache=True, nogil=True)
+def _cone_meets(
+    heights: Floats, x0: float, y0: float, cell: float, tip: Floats, row: Floats
+) -> bool:
+    """Return whether a cone [z0, r0, z1, r1] over a tip (3,) comes lower than a field at the centre of any cell."""
+    nx, ny = heights.shape
+    x, y = tip[0], tip[1]
+    low, near, high, far = row[0], row[1], row[2], row[3]
+    widest = max(near, far)
+    i0 = max(int(math.ceil((x - widest - x0) / cell - 0.5)), 0)
+    i1 = min(int(math.floor((x + widest - x0) / cell - 0.5)) + 1, nx)
+    j0 = max(int(math.ceil((y - widest - y0) / cell - 0.5)), 0)
+    j1 = min(int(math.floor((y + widest - y0) / cell - 0.5)) + 1, ny)
+    for i in range(i0, i1):
+        px = x0 + (i + 0.5) * cell - x
+        for j in range(j0, j1):
+            above = heights[i, j] - tip[2]
+            if above <= low:
+                continue
+            away = math.hypot(px, y0 + (j + 0.5) * cell - y)
+            if away < near:
+                return True
+            # The lowest place of the cone that far off its axis.
+            if away < far and above > low + (high - low) * (away - near) / (far - near):
+                return True
+    return False
 
 
 def zmap_cut_reference(
@@ -190,9 +201,16 @@ def zmap_highest_reference(
 
 
 def zmap_meets_reference(
-    heights: Floats, x0: float, y0: float, cell: float, tips: Floats, rows: Floats, met: Bools
+    heights: Floats,
+    top: float,
+    x0: float,
+    y0: float,
+    cell: float,
+    tips: Floats,
+    rows: Floats,
+    met: Bools,
 ) -> None:
-    """Plain numpy form of `zmap_meets`: every cell for every pose and cone."""
+    """Plain numpy form of `zmap_meets`: every cell for every pose and cone, whatever `top` is."""
     centres = _centres(heights, x0, y0, cell)
     for k in range(len(tips)):
         away, above = np.linalg.norm(centres - tips[k, :2], axis=-1), heights - tips[k, 2]

@@ -253,7 +253,9 @@ class _AreaTips:
         """Return which tips (n, 3) are no farther than a distance in cells from those that touch the area."""
         # With a bound the tree looks at what is near alone: far positions would be the slow ones.
         most = distance * self.cell
-        found = self.tree.query(tips, distance_upper_bound=np.nextafter(most, np.inf))[0]
+        found = self.tree.query(tips, distance_upper_bound=np.nextafter(most, np.inf), workers=-1)[
+            0
+        ]
         return np.asarray(found <= most)
 
 

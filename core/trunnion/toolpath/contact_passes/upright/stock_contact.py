@@ -52,6 +52,8 @@ def without_stock_contact(
         return list(passes), ()
     _take_part_off(field, stock, drive, tips[doubtful], tool)
     field = np.maximum(field, _lowest_within(stock.heights, RIM))
+    # Passes only lower it.
+    top = float(field.max())
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
     kept, left, over = list[Pass](), 0.0, 0.0
     for k, one in enumerate(passes):
@@ -61,7 +63,13 @@ def without_stock_contact(
         if len(some):
             found = np.zeros(len(some), dtype=bool)
             heightfield.zmap_meets(
-                field, *stock.corner, stock.cell, np.ascontiguousarray(tips[of][some]), rows, found
+                field,
+                top,
+                *stock.corner,
+                stock.cell,
+                np.ascontiguousarray(tips[of][some]),
+                rows,
+                found,
             )
             met[some] = found
         pieces = [one]
