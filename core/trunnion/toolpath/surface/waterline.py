@@ -7,6 +7,7 @@ exactly on the grid's lines and then between them by halving, always on the free
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -22,8 +23,9 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
+from trunnion.threads import in_parallel
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
 from trunnion.toolpath.contact_passes.linking.link_passes import linked
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
@@ -55,6 +57,8 @@ INSIDE = (0.25, 8.0, 0.75, 2.0)
 then in chord errors and in the chord's length, as a corner needs."""
 NEARBY, ROUGHLY = 1.0, 2.5
 """Cells: a tip this near to one on the area touches it; and one that is only known to be somewhere on a cell's side may."""
+CHUNK = 5000
+"""Tips that are looked for by one thread at once."""
 ROLLS = 0.15
 """Of an arc: by how much the way round an edge may differ from it."""
 SMALLEST_LEFTOVER = 0.5
@@ -249,14 +253,20 @@ class _AreaTips:
         tips = spread(slopes.tips, cell)
         return _AreaTips(tips, cKDTree(tips), cell)
 
-    def has(self, tips: Floats, distance: float = NEARBY) -> Bools:
+    def has(
+        self, tips: Floats, distance: float = NEARBY, progress: Progress = NO_PROGRESS
+    ) -> Bools:
         """Return which tips (n, 3) are no farther than a distance in cells from those that touch the area."""
         # With a bound the tree looks at what is near alone: far positions would be the slow ones.
-        most = distance * self.cell
-        found = self.tree.query(tips, distance_upper_bound=np.nextafter(most, np.inf), workers=-1)[
-            0
-        ]
-        return np.asarray(found <= most)
+        most, found = distance * self.cell, np.empty(len(tips), dtype=bool)
+        bound = float(np.nextafter(most, np.inf))
+
+        def work(first: int, last: int) -> None:
+            away = self.tree.query(tips[first:last], distance_upper_bound=bound)[0]
+            found[first:last] = away <= most
+
+        in_parallel(work, len(tips), CHUNK, progress, "Looking at steep faces")
+        return found
 
 
 def _loops(
@@ -284,18 +294,27 @@ def _loops(
     numbers = np.concatenate([[-0.5], np.arange(len(levels)), [len(levels) - 0.5]])
     radius = tool.radius + drive.allowance
 
-    def near(plan: Floats, z: float, distance: float) -> Bools:
-        return area.has(np.column_stack([plan, np.full(len(plan), z + drive.allowance)]), distance)
+    def near(plans: Sequence[Floats], over: Floats, distance: float) -> list[Bools]:
+        """Return which places of paths (k, 2) at heights (n,) are near the area."""
+        sizes = [len(plan) for plan in plans]
+        z = np.repeat(over + drive.allowance, sizes)
+        found = area.has(np.column_stack([np.concatenate(plans), z]), distance, progress)
+        return np.split(found, np.cumsum(sizes)[:-1])
 
-    found: list[tuple[SheetLine, Ints, bool]] = []
     # March the level lines; `numbers` maps heights so that all levels are whole numbers of one field.
-    for line in whole_levels(grid, np.interp(heights, knots, numbers)):
-        progress.check()
-        line = replace(line, ends=line.ends[::-1], share=line.share[::-1])
-        plan = line.value(grid.points)[:, :2]
-        near_area = near(plan, float(levels[line.level]), ROUGHLY)
-        # So far only roughly, and over gaps in which an edge may be rolled round.
-        gap = 2.0 * settings.overlap + math.pi * radius
+    marched = [
+        replace(line, ends=line.ends[::-1], share=line.share[::-1])
+        for line in whole_levels(grid, np.interp(heights, knots, numbers))
+    ]
+    if not marched:
+        return []
+    progress.check()
+    plans = [line.value(grid.points)[:, :2] for line in marched]
+    over = np.array([levels[line.level] for line in marched])
+    # So far only roughly, and over gaps in which an edge may be rolled round.
+    gap = 2.0 * settings.overlap + math.pi * radius
+    found: list[tuple[SheetLine, Ints, bool]] = []
+    for line, plan, near_area in zip(marched, plans, near(plans, over, ROUGHLY), strict=True):
         found += [
             (line, rows, closed)
             for rows, closed in _pieces(
@@ -305,9 +324,8 @@ def _loops(
     if not found:
         return []
     ends = np.concatenate([line.ends[rows] for line, rows, _ in found])
-    over = np.repeat(
-        [levels[line.level] for line, *_ in found], [len(rows) for _, rows, _ in found]
-    )
+    level = np.array([levels[line.level] for line, *_ in found])
+    over = np.repeat(level, [len(rows) for _, rows, _ in found])
     # Exact crossings: along each cut edge of the grid, from the blocked end to the rim (`_Blocked.rim`).
     ends = np.take_along_axis(ends, np.argsort(-heights[ends], axis=1, kind="stable"), axis=1)
     high, low = grid.points[ends[:, 0], :2], grid.points[ends[:, 1], :2]
@@ -317,9 +335,11 @@ def _loops(
     plan = np.where(has_rim[:, None], high + run[:, None] * direction, low)
     split = np.split(plan, np.cumsum([len(rows) for _, rows, _ in found])[:-1])
     lines = []
-    for loop, (line, _, closed) in zip(split, found, strict=True):
+    for loop, (line, _, closed), isnear in zip(
+        split, found, near(split, level, NEARBY), strict=True
+    ):
         z = float(levels[line.level])
-        for rows, whole in _pieces(loop, near(loop, z, NEARBY), closed, settings.overlap, radius):
+        for rows, whole in _pieces(loop, isnear, closed, settings.overlap, radius):
             rows = rows[np.append(True, np.hypot(*np.diff(loop[rows], axis=0).T) > CLOSE)]
             if len(rows) > 1:
                 lines.append(_Loop(plan=loop[rows], z=z, level=line.level, closed=whole))
