@@ -68,6 +68,19 @@ def mixed_block(
     return block().cut(space).val().wrapped
 
 
+@cache
+def stepped_block(long: float = 110.0, depth: float = 12.0, lower: float = 4.0) -> Any:
+    """Return a block with a long pocket whose wall at high x leans over; its last 70 mm along y are deeper by `lower`."""
+    profile = [(15.0, 20.0), (45.0, 20.0), (44.0, 20.0 + depth), (15.0, 20.0 + depth)]
+    deep = [(15.0, 20.0 - lower), (45.0 + lower / depth, 20.0 - lower), *profile[1:]]
+    whole, end = (
+        cq.Workplane("XZ", origin=(0.0, 15.0 + long, 0.0)).polyline(p).close().extrude(length)
+        for p, length in ((profile, long), (deep, 70.0))
+    )
+    solid = cq.Workplane("XY").box(60.0, long + 30.0, 20.0 + depth, centered=False)
+    return solid.cut(whole.union(end)).val().wrapped
+
+
 def bowl_space(radius: float, depth: float, corner: float) -> Any:
     """Return the space of the pocket of `bowl_block` without a fillet."""
     at = (BLOCK[0] / 2, BLOCK[1], BLOCK[2] - depth + radius)

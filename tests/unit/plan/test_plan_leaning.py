@@ -31,6 +31,7 @@ SHAPES = {
     "away": leaning_pockets.leaning_block,
     "over": leaning_pockets.mixed_block,
     "over a fillet": partial(leaning_pockets.mixed_block, fillet=3.0),
+    "over two floors": leaning_pockets.stepped_block,
     "bowl": leaning_pockets.bowl_block,
     "hill": leaning_pockets.hill_block,
     "bowl beside overhang": leaning_pockets.bowl_beside_overhang_block,
@@ -134,6 +135,12 @@ def test_no_cutter_goes_under_an_upper_edge_that_lies_outside_of_the_floor_over_
     for area in (floor.region, level.boundary):
         assert not area.minus(free.offset(0.02))
     assert pocket.overhang_rims()
+
+
+def test_what_goes_down_to_a_lower_floor_has_its_space_at_the_height_of_higher_ones() -> None:
+    higher, lower = pocket_of("over two floors")[0].floors()[1]
+    assert higher.bottom > lower.bottom
+    assert not lower.boundary.minus(higher.boundary.offset(0.02))
 
 
 def test_a_flank_goes_along_the_upper_edge_of_a_wall_that_leans_over() -> None:

@@ -5,6 +5,7 @@ The field errs on the side of material everywhere: it begins as the blank's top 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from hashlib import sha256
 
@@ -46,8 +47,8 @@ class PlanningStock:
     `digest` is a short stable digest of the uncut field and everything that was cut from it. A `centred` field errs to neither side:
     a cell is lowered where the cutter covers its middle. It is what loads are taken from, never clearances. `widths` is the share of a
     cutter's radius that it clears up to the top of the stock: less than 1 over ground laid flat, where a straight body gets narrower
-    upwards. `reads` takes down where it is looked at (`recorded`), which for one who takes the `heights` is everywhere; `field` alone is
-    for places that were looked at before.
+    upwards. `cuts` are the paths that were taken off it with their tools, in the order they were. `reads` takes down where it is looked
+    at (`recorded`), which for one who takes the `heights` is everywhere; `field` alone is for places that were looked at before.
     """
 
     field: Floats
@@ -56,6 +57,7 @@ class PlanningStock:
     digest: str
     centred: bool = False
     widths: float = 1.0
+    cuts: tuple[tuple[Toolpath, Tool], ...] = ()
     reads: StockReads | None = None
 
     @staticmethod
@@ -109,7 +111,7 @@ class PlanningStock:
         )
         if tool.full_width_height > 0.0:
             cut = digest(cut, tool.full_width_height)
-        return replace(made, field=_fixed(made.field), digest=cut)
+        return replace(made, field=_fixed(made.field), digest=cut, cuts=(*self.cuts, (path, tool)))
 
     def recorded(self) -> PlanningStock:
         """Return the same stock, which takes down from now on where it is looked at; so do working copies of it."""
@@ -156,6 +158,29 @@ class PlanningStock:
             digest="",
             reads=None,
         )
+
+    def centred_finely(
+        self, low: Floats, high: Floats, cell: float, progress: Progress = NO_PROGRESS
+    ) -> PlanningStock:
+        """Return a centred working copy of the part of the stock that a box from `low` to `high` (2,) touches, in cells of about a side
+        (mm): all that was cut is cut again. What was cut from elsewhere is known as well as the stock knows it."""
+        if self.reads is not None:
+            # Cuts that leave the same heights may leave other ones in finer cells.
+            self.reads.add_everything()
+        near = self.cropped(low, high)
+        side = max(cell, float(np.sqrt(near.field.size * near.cell**2 / MOST_CELLS)))
+        parts = max(1, math.floor(near.cell / side + tolerance.PARAMETRIC))
+        field = np.repeat(np.repeat(near.field, parts, axis=0), parts, axis=1)
+        made = replace(near, field=field, cell=near.cell / parts, centred=True, cuts=())
+        corners = np.array(made.box())
+        for path, tool in progress.each(self.cuts):
+            around = tool.radius + made.cell
+            meets = (path.position[:, :2].max(axis=0) > corners[0] - around) & (
+                path.position[:, :2].min(axis=0) < corners[1] + around
+            )
+            if meets.all():
+                made.lower(path, tool, progress)
+        return made
 
     def _cells(self, low: Floats, high: Floats) -> tuple[Ints, Ints]:
         """Return the first cell (2,) that a box touches, and the first (2,) behind it."""

@@ -194,7 +194,7 @@ def parallel(
         reversing=settings.way == "both",
         chord=settings.chord,
     )
-    passes, blocked = without_stock_contact(passes, drive, tool, stock, planes.widest)
+    passes, blocked = without_stock_contact(passes, drive, tool, stock, planes.widest, progress)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.7, 1.0)),
         findings=(*found, *lost, *blocked),

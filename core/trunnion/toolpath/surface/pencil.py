@@ -158,7 +158,7 @@ def pencil(
         reversing=True,
         chord=settings.chord,
     )
-    passes, blocked = without_stock_contact(passes, drive, tool, stock, stepover)
+    passes, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
         findings=blocked,

@@ -182,7 +182,7 @@ def waterline(
         arcs=True,
         overlap=settings.overlap,
     )
-    passes, blocked = without_stock_contact(passes, drive, tool, stock, step)
+    passes, blocked = without_stock_contact(passes, drive, tool, stock, step, progress)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
         findings=(*found, *blocked),

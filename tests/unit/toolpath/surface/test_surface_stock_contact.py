@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from programs import LINE, RAPID, path_of
 from surface_drives import DATA, driven, grid, joined, roughed
 from trunnion.geometry.kernels.heightfield import zmap_meets, zmap_meets_reference
 from trunnion.model.motion.toolpath import Mark
@@ -57,7 +58,7 @@ def along(y, z=0.0, start=2.0, end=28.0):
 @pytest.mark.parametrize(("wide", "clear"), [(30.0, True), (1.5, False)])
 def test_a_pass_in_a_trench_is_cut_where_neck_and_shank_have_space(wide, clear):
     drive, _, stock = trench(wide)
-    kept, findings = without_stock_contact([along(15.0)], drive, SLENDER, stock, 0.5)
+    kept, findings = without_stock_contact([along(15.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS)
     assert bool(kept) is clear and bool(findings) is not clear
     if findings:
         assert findings[0].code == "surface.in-stock" and "13.0 mm2" in findings[0].text
@@ -65,7 +66,7 @@ def test_a_pass_in_a_trench_is_cut_where_neck_and_shank_have_space(wide, clear):
 
 def test_stock_no_higher_than_the_flutes_are_long_is_in_no_neck_s_way():
     drive, _, stock = trench(1.5, deep=2.9)
-    kept, findings = without_stock_contact([along(5.0)], drive, SLENDER, stock, 0.5)
+    kept, findings = without_stock_contact([along(5.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS)
     assert len(kept) == 1 and not findings
 
 
@@ -75,7 +76,7 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
     x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
     heights[x > 20.0] = 20.0
     kept, findings = without_stock_contact(
-        [along(15.0)], drive, SLENDER, replace(stock, field=heights), 0.5
+        [along(15.0)], drive, SLENDER, replace(stock, field=heights), 0.5, NO_PROGRESS
     )
     assert not kept and findings
     split = Pass(
@@ -84,18 +85,18 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
         normal=np.tile(UPRIGHT, (53, 1)),
     )
     (kept,), findings = without_stock_contact(
-        [split], drive, SLENDER, replace(stock, field=heights), 0.5
+        [split], drive, SLENDER, replace(stock, field=heights), 0.5, NO_PROGRESS
     )
-    # Its shank of 2 mm comes as near as the rim of 1 mm that isn't told from stock lets it.
-    assert kept.tip[0, 0] == 2.0 and 18.0 < kept.tip[-1, 0] < 20.0
+    # Its shank has a radius of 2 mm, the stock begins at x = 20.
+    assert kept.tip[0, 0] == 2.0 and 17.0 < kept.tip[-1, 0] <= 18.0
 
 
 def test_passes_that_go_down_step_by_step_make_space_for_the_neck_of_those_below():
     drive, _, stock = trench(1.5, deep=9.0)
     stairs = [along(5.0, z) for z in np.arange(7.0, -0.1, -1.0)]
-    kept, findings = without_stock_contact(stairs, drive, SLENDER, stock, 0.5)
+    kept, findings = without_stock_contact(stairs, drive, SLENDER, stock, 0.5, NO_PROGRESS)
     assert len(kept) == len(stairs) and not findings
-    kept, findings = without_stock_contact(stairs[-1:], drive, SLENDER, stock, 0.5)
+    kept, findings = without_stock_contact(stairs[-1:], drive, SLENDER, stock, 0.5, NO_PROGRESS)
     assert not kept and findings
 
 
@@ -103,21 +104,31 @@ def test_where_the_shank_is_wider_than_the_cutter_steps_make_no_space_for_it():
     drive, _, stock = trench(1.5, deep=20.0)
     stairs = [along(5.0, z) for z in np.arange(18.0, -0.1, -1.0)]
     thick = replace(SLENDER, shank_diameter=6.0)
-    kept, findings = without_stock_contact(stairs, drive, thick, stock, 0.5)
+    kept, findings = without_stock_contact(stairs, drive, thick, stock, 0.5, NO_PROGRESS)
     assert kept and 9.0 <= min(p.tip[:, 2].min() for p in kept) <= 10.0 and findings
 
 
-@pytest.mark.parametrize(("thick", "off", "clear"), [(0.8, 1.05, True), (2.5, 2.0, False)])
+def rows_of(z, y):
+    """Return a path in rows along x at a height, the first one at y, past the far side of the field."""
+    ends = [(x, at) for at in np.arange(y, 40.0, 4.0).tolist() for x in (-10.0, 40.0)]
+    return path_of((RAPID, *ends[0], z), *((LINE, *end, z, 100.0) for end in ends[1:]))
+
+
+@pytest.mark.parametrize(
+    ("thick", "off", "clear"),
+    [(0.0, 1.05, True), (0.05, 1.05, True), (0.8, 1.05, False), (0.8, 2.85, True)],
+)
 def test_what_is_left_on_a_wall_is_told_from_the_rim_that_the_field_keeps_there(thick, off, clear):
-    """The wall ends at y = 15; beside it stock of a thickness stands as high as the wall."""
+    """The wall ends at y = 15; beside it stock of a thickness stands as high as the wall, cut by an end mill of 6 mm."""
     floor = grid(lambda x, y: 0.0 * x, n=8)
     wall = grid(lambda x, y: 9.0 + 0.0 * x, n=8, high=(30.0, 15.0), tag=2)
-    skin = joined(floor, wall)
-    drive, _, stock = driven(skin, top=20.0)
-    y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
-    heights = np.where((y < 15.0 + thick) & (y > -5.0), 9.3, 0.3) + np.zeros(stock.heights.shape)
+    drive, _, stock = driven(joined(floor, wall), top=20.0)
+    stock = stock.after(rows_of(9.0, -5.0), bull(6.0, 0.0)(flute=20.0))
+    stock = stock.after(rows_of(0.3, 18.0 + thick), bull(6.0, 0.0)(flute=20.0))
+    rim = int((15.0 + thick - stock.corner[1]) // stock.cell)
+    assert (stock.heights[:, rim] > 5.0).any() or thick == 0.0
     kept, findings = without_stock_contact(
-        [along(15.0 + off)], drive, SLENDER, replace(stock, field=heights), 0.5
+        [along(15.0 + off)], drive, SLENDER, stock, 0.5, NO_PROGRESS
     )
     assert bool(kept) is clear and bool(findings) is not clear
 
@@ -128,8 +139,8 @@ def test_a_ridge_away_from_walls_is_stock_though_it_is_narrow():
     heights = stock.heights.copy()
     heights[:, np.abs(y - 15.0) < 0.9] = 12.0
     stock = replace(stock, field=heights)
-    assert not without_stock_contact([along(15.0)], drive, SLENDER, stock, 0.5)[0]
-    assert without_stock_contact([along(18.0)], drive, SLENDER, stock, 0.5)[0]
+    assert not without_stock_contact([along(15.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS)[0]
+    assert without_stock_contact([along(18.25)], drive, SLENDER, stock, 0.5, NO_PROGRESS)[0]
 
 
 STRATEGIES = (

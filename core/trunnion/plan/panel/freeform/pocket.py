@@ -203,8 +203,10 @@ class FreeformPocket:
         levels, above = [], space.top
         for z in dict.fromkeys(f.z for f in floors):
             wanted = union_all([f.region for f in floors if f.z == z])
+            # What goes down to lower floors passes by here as well.
+            below = union_all([f.region for f in floors if f.z <= z])
             free = space.area_at(self.feature, z + tolerance.OFF_PLANE).boundary
-            boundary = free.intersect(wanted.offset(AROUND)).union(wanted)
+            boundary = free.intersect(below.offset(AROUND)).union(wanted)
             levels.append(DriveLevel(top=above, bottom=z, wanted=wanted, boundary=boundary))
             above = z
         return floors, tuple(levels)

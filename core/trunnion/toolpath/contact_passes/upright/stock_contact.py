@@ -2,7 +2,7 @@
 
 Roughing can't come everywhere: beside what it left a slender cutter may still touch the faces, with its flutes deep below the top of it.
 The planner's field of heights is higher than the stock: round every cut by a part of a cell, and by more beside walls, where cells are
-never cut whole. Heights that may be no more than that are not counted: what is narrower than that, and what is as near to the part.
+never cut whole. Positions where that is in the way are looked at again in finer cells, each as high as the stock in its middle.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.ndimage import maximum_filter, minimum_filter
+from scipy.ndimage import maximum_filter
 
 from trunnion.findings import Finding, warning
 from trunnion.geometry.arrays import Bools, Floats, Ints
@@ -19,14 +19,15 @@ from trunnion.geometry.kernels import heightfield
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.choices import IN_STOCK
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
-EDGE = 1
-"""Cells round a cut that the field may keep high though the cutter has been there."""
-RIM = 2
-"""Cells beside walls that it keeps high though all beside them is cut."""
+FINE = 0.25
+"""mm: the side of the finer cells."""
+RIM = 1.0
+"""Of a cell: how far beside a wall its middle may be that counts as the wall's."""
 SHORTEST = 0.05
 """mm: a shorter piece of a pass between two interruptions is left out."""
 SMALLEST_LEFTOVER = 0.5
@@ -34,7 +35,12 @@ SMALLEST_LEFTOVER = 0.5
 
 
 def without_stock_contact(
-    passes: Sequence[Pass], drive: SurfaceDrive, tool: Tool, stock: PlanningStock, stepover: float
+    passes: Sequence[Pass],
+    drive: SurfaceDrive,
+    tool: Tool,
+    stock: PlanningStock,
+    stepover: float,
+    progress: Progress,
 ) -> tuple[list[Pass], tuple[Finding, ...]]:
     """Return what of passes in their order, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes, and a
     finding of the area that is left.
@@ -45,13 +51,16 @@ def without_stock_contact(
     if not len(passes) or not len(rows) or not all(p.upright for p in passes):
         return list(passes), ()
     tips, owner, segment = _spaced(passes, stock.cell)
-    stock = _around(stock, tips, rows, tool)
-    field = _lowest_within(stock.heights, EDGE)
-    doubtful = ~_is_free(field, stock, tips, rows)
+    low, high = _around(stock, tips, rows, tool)
+    doubtful = ~_is_free(stock.cropped(low, high), tips, rows)
     if not doubtful.any():
         return list(passes), ()
-    _take_part_off(field, stock, drive, tips[doubtful], tool)
-    field = np.maximum(field, _lowest_within(stock.heights, RIM))
+    fine = progress.aside(
+        lambda own: stock.centred_finely(low, high, FINE, own), "Cutting the stock in finer cells"
+    )
+    field = fine.field
+    body = _widened(rows, tool.radius, heightfield.HALF_DIAGONAL * fine.cell)
+    _take_part_off(fine, drive, tips[doubtful], tool)
     # Passes only lower it.
     top = float(field.max())
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
@@ -65,10 +74,10 @@ def without_stock_contact(
             heightfield.zmap_meets(
                 field,
                 top,
-                *stock.corner,
-                stock.cell,
+                *fine.corner,
+                fine.cell,
                 np.ascontiguousarray(tips[of][some]),
-                rows,
+                body,
                 found,
             )
             met[some] = found
@@ -78,23 +87,27 @@ def without_stock_contact(
             left += one.length - sum(p.length for p in pieces)
             over = max(over, float(field.max() - tips[of][met][:, 2].min()))
         for piece in pieces:
-            _lower(field, stock, piece, tool)
+            _lower(fine, piece, tool)
         kept += pieces
     return kept, _findings(left * stepover, over, drive, tool)
 
 
-def _around(stock: PlanningStock, tips: Floats, rows: Floats, tool: Tool) -> PlanningStock:
-    """Return of the stock what a tool at tips (n, 3) may come near to, and the cells beside that are looked at for it."""
-    reach = max(float(rows[:, [1, 3]].max()), tool.radius) + (2 * RIM + 4) * stock.cell
+def _widened(rows: Floats, radius: float, more: float) -> Floats:
+    """Return the cones (r, 4) of a body wider by `more` (mm), as far as a cell's middle may be from what stands in it; where they are
+    thinner than the cutter no wider than that: it has been where they go."""
+    wide = rows.copy()
+    near = rows[:, [1, 3]]
+    wide[:, [1, 3]] = np.where(near >= radius, near + more, np.minimum(near + more, radius))
+    return wide
+
+
+def _around(stock: PlanningStock, tips: Floats, rows: Floats, tool: Tool) -> tuple[Floats, Floats]:
+    """Return the corners (2,) of the box of what a tool at tips (n, 3) may come near to."""
+    reach = max(float(rows[:, [1, 3]].max()), tool.radius) + 4.0 * stock.cell
     # A tip beside the field counts at the nearest cell of it.
     low, high = stock.box()
     plan = np.clip(tips[:, :2], low, high)
-    return stock.cropped(plan.min(axis=0) - reach, plan.max(axis=0) + reach)
-
-
-def _lowest_within(heights: Floats, cells: int) -> Floats:
-    """Return a field that is as low in each cell as the lowest of those round it."""
-    return np.ascontiguousarray(minimum_filter(heights, 2 * cells + 1, mode="nearest"), np.float64)
+    return plan.min(axis=0) - reach, plan.max(axis=0) + reach
 
 
 def _spaced(passes: Sequence[Pass], step: float) -> tuple[Floats, Ints, Ints]:
@@ -115,8 +128,9 @@ def _spaced(passes: Sequence[Pass], step: float) -> tuple[Floats, Ints, Ints]:
     return np.concatenate(tips), np.concatenate(owner), np.concatenate(segment)
 
 
-def _is_free(field: Floats, stock: PlanningStock, tips: Floats, rows: Floats) -> Bools:
+def _is_free(stock: PlanningStock, tips: Floats, rows: Floats) -> Bools:
     """Return at which tips (n, 3) nothing in the square about each cone of a body is higher than the cone's lower end."""
+    field = stock.field
     cell = np.floor((tips[:, :2] - stock.corner) / stock.cell).astype(np.int64)
     at = tuple(np.clip(cell, 0, np.array(field.shape) - 1).T)
     # A tip beside the field counts at the nearest cell of it, which is no farther from any other one.
@@ -127,11 +141,10 @@ def _is_free(field: Floats, stock: PlanningStock, tips: Floats, rows: Floats) ->
     return clear
 
 
-def _take_part_off(
-    field: Floats, stock: PlanningStock, drive: SurfaceDrive, tips: Floats, tool: Tool
-) -> None:
-    """Take off a field, where the body of a tool at tips (k, 3) may come, heights that are those of the part within a rim, or of what lies
-    on it no thicker than the flutes are long."""
+def _take_part_off(stock: PlanningStock, drive: SurfaceDrive, tips: Floats, tool: Tool) -> None:
+    """Take off a working copy, where the body of a tool at tips (k, 3) may come, heights that are the part's, or of what lies on it no
+    thicker than the flutes are long."""
+    field = stock.field
     widest = max(max(r0, r1) for _, r0, _, r1 in tool.profile())
     near = np.zeros(field.shape, dtype=bool)
     cell = np.floor((tips[:, :2] - stock.corner) / stock.cell).astype(np.int64)
@@ -142,7 +155,7 @@ def _take_part_off(
         return
     centres = stock.corner + (rows + 0.5) * stock.cell
     lowest = float(drive.low[2]) - tool.flute_length
-    part = drive.skin.drop.drop(centres, level_disc((RIM + 0.5) * stock.cell), lowest)
+    part = drive.skin.drop.drop(centres, level_disc(RIM * stock.cell), lowest)
     some = tuple(rows[field[tuple(rows.T)] <= part + tool.flute_length].T)
     field[some] = -np.inf
 
@@ -156,17 +169,16 @@ def _pieces(one: Pass, blocked: Ints) -> list[Pass]:
     return [p for p in pieces if p.length >= SHORTEST]
 
 
-def _lower(field: Floats, stock: PlanningStock, one: Pass, tool: Tool) -> None:
-    """Take a pass off a field in which each cell is as high as the lowest near it: as wide as the cutter and that."""
+def _lower(stock: PlanningStock, one: Pass, tool: Tool) -> None:
+    """Take a pass off a centred working copy."""
     starts, ends = (np.ascontiguousarray(v) for v in (one.tip[:-1], one.tip[1:]))
-    wider = (EDGE + heightfield.HALF_DIAGONAL) * stock.cell
     heightfield.zmap_cut(
-        field,
+        stock.field,
         *stock.corner,
         stock.cell,
         starts,
         ends,
-        tool.radius + wider,
+        tool.radius + heightfield.HALF_DIAGONAL * stock.cell,
         tool.corner_radius,
         np.empty((len(starts), 2)),
     )

@@ -53,6 +53,6 @@ def upright_path(
         order=order,
         reversing=reversing,
     )
-    clear, blocked = without_stock_contact(passes, drive, tool, stock, stepover)
+    clear, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     path = linked(clear, drive, tool, data, stock, setup, parameters, progress)
     return Planned(path=path, findings=(*made.remaining_findings(drive, tool, stepover), *blocked))
