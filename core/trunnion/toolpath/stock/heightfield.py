@@ -45,10 +45,11 @@ class PlanningStock:
     """A `field` of heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,).
 
     `digest` is a short stable digest of the uncut field and everything that was cut from it. A `centred` field errs to neither side:
-    a cell is lowered where the cutter covers its middle. It is what loads are taken from, never clearances. `widths` is the share of a
-    cutter's radius that it clears up to the top of the stock: less than 1 over ground laid flat, where a straight body gets narrower
-    upwards. `cuts` are the paths that were taken off it with their tools, in the order they were. `reads` takes down where it is looked
-    at (`recorded`), which for one who takes the `heights` is everywhere; `field` alone is for places that were looked at before.
+    a cell is lowered where the cutter covers its middle. Loads are taken from it, and what is in a neck's way (`centred_finely`); safe
+    heights never. `widths` is the share of a cutter's radius that it clears up to the top of the stock: less than 1 over ground laid
+    flat, where a straight body gets narrower upwards. `cuts` are the paths that were taken off it with their tools, in the order they
+    were. `reads` takes down where it is looked at (`recorded`), which for one who takes the `heights` is everywhere; `field` alone is for
+    places that were looked at before.
     """
 
     field: Floats
