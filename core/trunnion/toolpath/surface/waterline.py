@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -157,7 +158,7 @@ def waterline(
     passes: list[Pass] = []
     for n, wall in enumerate(walls):
         share = progress.part(0.1 + 0.7 * n / len(walls), 0.1 + 0.7 * (n + 1) / len(walls))
-        area = _AreaTips.of(wall.slopes, tool)
+        area = share.aside(partial(_AreaTips.of, wall.slopes, tool))
         loops = _loops(wall.levels, area, drive, tool, settings, share.part(0.0, 0.9))
         made = _in_order(loops, tool, both=settings.way == "both")
         passes += made
@@ -247,7 +248,7 @@ class _AreaTips:
     cell: float
 
     @staticmethod
-    def of(slopes: FacetSlopes, tool: Tool) -> _AreaTips:
+    def of(slopes: FacetSlopes, tool: Tool, _: Progress) -> _AreaTips:
         """Return the tips of a tool that touches triangles."""
         cell = float(np.clip(CELL * tool.radius, FINEST, COARSEST))
         tips = spread(slopes.tips, cell)
@@ -308,13 +309,13 @@ def _loops(
     ]
     if not marched:
         return []
-    progress.check()
     plans = [line.value(grid.points)[:, :2] for line in marched]
     over = np.array([levels[line.level] for line in marched])
     # So far only roughly, and over gaps in which an edge may be rolled round.
     gap = 2.0 * settings.overlap + math.pi * radius
     found: list[tuple[SheetLine, Ints, bool]] = []
     for line, plan, near_area in zip(marched, plans, near(plans, over, ROUGHLY), strict=True):
+        progress.check()
         found += [
             (line, rows, closed)
             for rows, closed in _pieces(
@@ -338,6 +339,7 @@ def _loops(
     for loop, (line, _, closed), isnear in zip(
         split, found, near(split, level, NEARBY), strict=True
     ):
+        progress.check()
         z = float(levels[line.level])
         for rows, whole in _pieces(loop, isnear, closed, settings.overlap, radius):
             rows = rows[np.append(True, np.hypot(*np.diff(loop[rows], axis=0).T) > CLOSE)]

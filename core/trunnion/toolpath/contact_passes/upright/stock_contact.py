@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from scipy.ndimage import maximum_filter
@@ -60,12 +61,13 @@ def without_stock_contact(
     )
     field = fine.field
     body = _widened(rows, tool.radius, heightfield.HALF_DIAGONAL * fine.cell)
-    _take_part_off(fine, drive, tips[doubtful], tool)
+    progress.aside(partial(_take_part_off, fine, drive, tips[doubtful], tool))
     # Passes only lower it.
     top = float(field.max())
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
     kept, left, over = list[Pass](), 0.0, 0.0
     for k, one in enumerate(passes):
+        progress.check()
         of = slice(starts[k], starts[k + 1])
         met = np.zeros(starts[k + 1] - starts[k], dtype=bool)
         some = np.flatnonzero(doubtful[of])
@@ -141,7 +143,9 @@ def _is_free(stock: PlanningStock, tips: Floats, rows: Floats) -> Bools:
     return clear
 
 
-def _take_part_off(stock: PlanningStock, drive: SurfaceDrive, tips: Floats, tool: Tool) -> None:
+def _take_part_off(
+    stock: PlanningStock, drive: SurfaceDrive, tips: Floats, tool: Tool, progress: Progress
+) -> None:
     """Take off a working copy, where the body of a tool at tips (k, 3) may come, heights that are the part's, or of what lies on it no
     thicker than the flutes are long."""
     field = stock.field
@@ -155,7 +159,7 @@ def _take_part_off(stock: PlanningStock, drive: SurfaceDrive, tips: Floats, tool
         return
     centres = stock.corner + (rows + 0.5) * stock.cell
     lowest = float(drive.low[2]) - tool.flute_length
-    part = drive.skin.drop.drop(centres, level_disc(RIM * stock.cell), lowest)
+    part = drive.skin.drop.drop(centres, level_disc(RIM * stock.cell), lowest, progress)
     some = tuple(rows[field[tuple(rows.T)] <= part + tool.flute_length].T)
     field[some] = -np.inf
 
