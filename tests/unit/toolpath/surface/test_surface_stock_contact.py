@@ -116,7 +116,13 @@ def rows_of(z, y):
 
 @pytest.mark.parametrize(
     ("thick", "off", "clear"),
-    [(0.0, 1.05, True), (0.05, 1.05, True), (0.8, 1.05, False), (0.8, 2.85, True)],
+    [
+        (0.0, 1.05, True),
+        (0.05, 1.05, True),
+        (0.8, 1.05, False),
+        (0.8, 2.85, True),
+        (2.5, 2.0, False),
+    ],
 )
 def test_what_is_left_on_a_wall_is_told_from_the_rim_that_the_field_keeps_there(thick, off, clear):
     """The wall ends at y = 15; beside it stock of a thickness stands as high as the wall, cut by an end mill of 6 mm."""
