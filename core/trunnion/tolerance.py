@@ -23,7 +23,10 @@ CHORD = 5e-3
 """Chord error of meshes that are only looked at."""
 
 PICTURE = 0.05
-"""Chord error of meshes in a report's pictures: a third of a pixel of a part of 200 mm, and drawn three times as fast as a finer one."""
+"""Least chord error of meshes in a report's pictures: a third of a pixel of a part of 200 mm, drawn three times as fast as a finer one."""
+
+PICTURE_SHARE = 1.0 / 4000.0
+"""Chord error of these meshes as a share of the diagonal of the part's box, where that is more: a third of a pixel of any part."""
 
 MESH_ANGLE = 0.3
 """Turn from chord to chord (radians) of meshes that are only looked at; finer ones cost seconds (measured) and show nothing more."""

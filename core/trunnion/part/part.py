@@ -197,6 +197,12 @@ class Part:
             self._meshes[chord, angle] = made
         return self._meshes[chord, angle]
 
+    @property
+    def picture_chord(self) -> float:
+        """Chord error (mm) of the triangles that pictures show: what nobody sees in one of the whole part."""
+        diagonal = float(np.linalg.norm(self.high - self.low))
+        return max(tolerance.PICTURE, tolerance.PICTURE_SHARE * diagonal)
+
     def section(self, frame: Frame, z: float) -> Region:
         """Return the material cut by the plane at height `z` of a frame, in the frame's x and y.
 

@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion import tolerance
 from trunnion.findings import BadCall, BadInput, Fix, has_errors
 from trunnion.geometry.cut import Cut
 from trunnion.geometry.kernels.compiling import compiling
@@ -262,7 +261,7 @@ class Engine:
     ) -> Session:
         """Return the session with every stale step up to `until` computed again; the one given stays as it was.
 
-        `ahead` is asked for the pictures of the plan as soon as its toolpaths are laid.
+        `ahead` is asked for the pictures of the plan as soon as its toolpaths are laid, if there are any.
         """
         last, progress = STEPS.index(step_named(until).name), progress.afresh()
         for n, step in enumerate(progress.each(STEP_TABLE[: last + 1])):
@@ -272,7 +271,7 @@ class Engine:
             share.at(0.0, step.title)
             session = run_step(session, step, self.context_of(session, share), share, STEPS)
             trim_memory()
-            if ahead is not None and step.name == _LAID:
+            if ahead is not None and step.name == _LAID and session.paths:
                 ahead(session, self._picture_mesh(session, share))
         progress.at(1.0, "done")
         return session
@@ -280,7 +279,7 @@ class Engine:
     def _picture_mesh(self, session: Session, progress: Progress) -> Mesh:
         part = self.context_of(session).part
         with part.watched(progress):
-            return part.mesh(tolerance.PICTURE)
+            return part.mesh(part.picture_chord)
 
     def playback(
         self, session: Session, cell: float = 0.0, progress: Progress = NO_PROGRESS
@@ -351,7 +350,7 @@ class Engine:
         with compiling(progress), context.part.watched(progress):
             files = write_documents(
                 session,
-                self._picture_mesh(session, progress),
+                partial(self._picture_mesh, session, progress),
                 Path(folder),
                 name=name,
                 date=date,

@@ -39,8 +39,11 @@ def before_route(session: Session, context: Context) -> None:
 
 
 def before_proof(session: Session, context: Context) -> None:
-    """Begin the triangles that pictures show, and those that leaning tools are proven against, where a machine can lean one."""
-    context.part.begin(MeshWork(tolerance.PICTURE))
+    """Begin the triangles that pictures show, and those that leaning tools are proven against, where a machine can lean one; none where
+    nothing is planned."""
+    if session.process is None or not session.process.operations:
+        return
+    context.part.begin(MeshWork(context.part.picture_chord))
     machines = [context.shop.machines[s.machine] for s in session.setups if s.machine]
     if context.part.is_closed and any(m.rotary for m in machines):
         context.part.begin(RefinedMeshWork.of(context.part.tags, tolerance.FACET_CHORD))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 from trunnion.findings import BadCall, BadInput
@@ -26,7 +27,7 @@ def write_programs(
 
 def write_documents(
     session: Session,
-    mesh: Mesh,
+    mesh_of: Callable[[], Mesh],
     folder: Path,
     *,
     name: str,
@@ -37,7 +38,8 @@ def write_documents(
 ) -> tuple[str, ...]:
     """Write programs, tool list, XML, pictures and report of a proven session and return the file names.
 
-    The report has the times of areas where an `estimate` of them is given; `drawing` draws its pictures.
+    The report has the times of areas where an `estimate` of them is given; `drawing` draws its pictures of the triangles that `mesh_of`
+    returns, which is asked once programs are there: what is refused needs none.
     """
     from trunnion.report.html import report_html
     from trunnion.store.features import write_features
@@ -49,7 +51,7 @@ def write_documents(
     files = list(
         write_programs(session, folder, name=stem, date=date, progress=progress.part(0.0, 0.1))
     )
-    drawn = drawing(session, mesh, folder, stem)
+    drawn = drawing(session, mesh_of(), folder, stem)
     progress.at(0.1, "writing XML and tool list")
     tools = [t.as_dict() for t in session.process.tools()]
     write_text(

@@ -131,3 +131,15 @@ def test_free_form_parts_are_closed_and_as_near_as_wanted(name):
     assert unpaired(skin) == 0
     assert (across(skin) * skin.normals[skin.triangles].mean(axis=1)).sum(axis=1).min() > -1e-9
     assert np.linalg.norm(across(skin), axis=1).sum() / 2.0 == approx(part.area, rel=1e-4)
+
+
+def test_near_a_box_is_what_reaches_into_it_in_plan():
+    skin = skin_of(read(ball_shape()), WORLD, CHORD)
+    low, high = skin.box()
+    for corners in np.random.default_rng(5).uniform(low[:2], high[:2], (20, 2, 2)):
+        from_, to = corners.min(axis=0), corners.max(axis=0)
+        some = skin.points[skin.triangles][:, :, :2]
+        kept = ((some >= from_).any(axis=1) & (some <= to).any(axis=1)).all(axis=1)
+        near = skin.near(from_, to)
+        assert np.array_equal(near.points[near.triangles], skin.points[skin.triangles[kept]])
+        assert np.array_equal(near.face, skin.face[kept])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import samples
+from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import Frame
 from trunnion.part.build import box_blank
@@ -28,6 +29,14 @@ def test_a_mesh_of_a_placed_instance_lies_where_the_instance_is() -> None:
     part = samples.read(samples.moved(samples.box_shape(), (100, 0, 0)))
     low, high = part.mesh().box()
     assert np.concatenate([low, high]) == pytest.approx([100, 0, 0, 140, 30, 20])
+
+
+def test_pictures_of_large_parts_are_as_coarse_as_nobody_sees() -> None:
+    small, large = samples.read(samples.box_shape()), samples.read(samples.box_shape(3e3, 2e3))
+    assert small.picture_chord == tolerance.PICTURE
+    # A third of a pixel of a picture in which the diagonal has as many pixels as a part of 200 mm.
+    pixel = np.linalg.norm(large.high - large.low) * tolerance.PICTURE / 200.0
+    assert large.picture_chord == pytest.approx(pixel)
 
 
 def test_a_blank_lies_in_its_frame(tmp_path: Path) -> None:

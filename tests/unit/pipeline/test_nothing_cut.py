@@ -28,7 +28,9 @@ def test_what_the_machine_does_not_take_is_rejected_at_once_with_the_reason(
     session = engine.with_choices(session, words)
     monkeypatch.setattr(proof, "prove_programs", refused)
     monkeypatch.setattr(Context, "skin", refused)
-    session = engine.run(session)
+    # Nor are pictures drawn of what does not leave: the mesh of one takes minutes for a part of metres.
+    monkeypatch.setattr(Engine, "_picture_mesh", refused)
+    session = engine.run(session, ahead=refused)
     assert not session.process.operations
     assert session.verdict.outcome is Outcome.FAILED
     assert "verify.errors-before" in {f.code for f in session.verdict.findings}

@@ -46,14 +46,14 @@ def opening(part: Part, chords: Sequence[float]) -> list[PartWork]:
 
 
 def test_three_axes_need_no_triangles_to_be_proven_against_before_they_are_asked_for() -> None:
-    _, _, _, asked = routed({})
-    assert asked.begun == [MeshWork(tolerance.PICTURE)]
+    _, _, part, asked = routed({})
+    assert asked.begun == [MeshWork(part.picture_chord)]
 
 
 def test_where_a_tool_may_lean_what_it_is_proven_against_is_begun_with_the_route() -> None:
     _, _, part, asked = routed({"setup.machine": "Trunnion 650"})
     assert asked.begun == [
-        MeshWork(tolerance.PICTURE),
+        MeshWork(part.picture_chord),
         *opening(part, [tolerance.FACET_CHORD]),
     ]
 
@@ -77,4 +77,4 @@ def test_nothing_is_begun_for_faces_that_are_planned_with_a_backing() -> None:
     surface = replace(session.recognition, family="surface")
     before_route(replace(session, recognition=surface), engine.context)
     before_proof(session, engine.context)
-    assert asked.begun == [MeshWork(tolerance.PICTURE)]
+    assert asked.begun == [MeshWork(part.picture_chord)]

@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats, Ints, floats, ints
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.surface.drop_surface import DropSurface
+from trunnion.progress import Progress
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -28,6 +29,7 @@ class Skin:
     bound: float
     avoid: Floats = field(default_factory=lambda: np.zeros((0, 5)))
     _drop: list[DropSurface] = field(init=False, repr=False, default_factory=list)
+    _plan_boxes: list[tuple[Floats, Floats]] = field(init=False, repr=False, default_factory=list)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", floats(self.points, (None, 3), "skin points"))
@@ -45,15 +47,25 @@ class Skin:
             self._drop.append(replace(made, avoid=self.avoid) if len(self.avoid) else made)
         return self._drop[0]
 
+    def made_ready(self, progress: Progress) -> None:
+        """Make the whole skin ready for dropping cutters, which takes a second for a million triangles, with looks at cancel."""
+        if not self._drop:
+            progress.aside(lambda _: self.drop)
+
     def of(self, tags: tuple[int, ...]) -> Bools:
         """Return which triangles (t,) lie on faces of some tags."""
         return np.isin(self.face, tags)
 
     def near(self, low: Floats, high: Floats) -> Skin:
         """Return the skin without the triangles that lie beside a box in plan with corners (2,): what is in it or over and under it."""
-        corners = self.points[self.triangles][..., :2]
-        inside = (corners.max(axis=1) >= low).all(axis=1) & (corners.min(axis=1) <= high).all(
-            axis=1
+        if not self._plan_boxes:
+            self._plan_boxes.append(_plan_boxes(self.points[:, :2], self.triangles))
+        lowest, highest = self._plan_boxes[0]
+        inside = (
+            (highest[0] >= low[0])
+            & (highest[1] >= low[1])
+            & (lowest[0] <= high[0])
+            & (lowest[1] <= high[1])
         )
         used, rows = np.unique(self.triangles[inside], return_inverse=True)
         return replace(
@@ -82,3 +94,13 @@ class Skin:
     def box(self) -> tuple[Floats, Floats]:
         """Return the lowest and highest corner (3,)."""
         return self.points.min(axis=0), self.points.max(axis=0)
+
+
+def _plan_boxes(points: Floats, triangles: Ints) -> tuple[Floats, Floats]:
+    """Return the lowest and the highest x and y (2, t) of triangles (t, 3) of plan points (v, 2)."""
+    low, high = np.empty((2, len(triangles))), np.empty((2, len(triangles)))
+    for axis in range(2):
+        first, second, third = (points[:, axis][triangles[:, n]] for n in range(3))
+        low[axis] = np.minimum(np.minimum(first, second), third)
+        high[axis] = np.maximum(np.maximum(first, second), third)
+    return low, high

@@ -99,6 +99,7 @@ def reached(
     # Only on which side of a height the tip is matters: what lies far from that is never searched to its end.
     near = tip[:, 2] - allowance
     side = lower_side(tool, allowance)
+    space.skin.made_ready(progress)
     top = space.skin.drop.drop(plan, side, near - BESIDE, progress, near + BESIDE) + allowance
     highest = float(space.skin.points[:, 2].max())
     clear = (top - tip[:, 2] < LIFTED) & (tip[:, 2] > space.low[2] - tolerance.SEW)

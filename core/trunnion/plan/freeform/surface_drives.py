@@ -51,8 +51,10 @@ def surface_driven(
         cut = remaining_stock.cut
 
     def made() -> tuple[Drive, tuple[Finding, ...]]:
-        drive = space.drive_of(
-            operation, needs, earlier, around, remaining_stock, upright, progress, within
+        drive = progress.aside(
+            lambda own: space.drive_of(
+                operation, needs, earlier, around, remaining_stock, upright, own, within
+            )
         )
         return drive, drive.findings
 

@@ -60,6 +60,7 @@ def lowest_tips(
         return_index=True,
         return_inverse=True,
     )
+    drive.skin.made_ready(progress)
     over = drive.skin.drop.drop(
         shifted[first],
         lower_side(tool, drive.allowance),
