@@ -106,6 +106,19 @@ def test_a_rib_crossed_by_a_higher_one_is_two() -> None:
     ] == 3
 
 
+def test_a_wide_low_top_in_no_pocket_is_a_boss() -> None:
+    found = recognized(terrace((0, 40, 60, 100), (0, 50), [[H, 8.0, 30.0]]))
+    boss = found.feature("boss-01")
+    assert roles(boss) == {"top": 1}
+    assert boss.sizes == {"top_z": 30.0, "below_top": 10.0, "area": 2000.0}
+    assert found.unexplained == () and "panel.lower-top" not in codes(found)
+
+
+def test_a_narrow_low_top_in_no_pocket_is_a_rib_still() -> None:
+    found = recognized(terrace((0, 40, 60, 70), (0, 50), [[H, 8.0, 30.0]]))
+    assert found.counts()["rib"] == 1 and "boss" not in found.counts()
+
+
 def test_a_wide_low_top_between_two_floors_is_a_floor() -> None:
     found = recognized(terrace((0, 10, 40, 70, 100, 110), (0, 10, 50, 60), ringed([[5, 20, 8]])))
     assert found.feature("pocket-01").sizes["floors_z"] == (20.0, 8.0, 5.0)

@@ -303,7 +303,7 @@ def _engagement(
         ), max(allowance, tolerance.SEW)
     if kind == "foot":
         return task.height, task.height
-    if kind in ("rib_top", "island_top"):
+    if kind in ("rib_top", "island_top", "boss_top"):
         return rough_depth, min(rough_width, task.width + 2 * allowance)
     if kind == "profile_rough":
         return rough_depth, min(rough_width, max(task.width - allowance, tolerance.SEW))

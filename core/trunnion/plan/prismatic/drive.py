@@ -161,8 +161,8 @@ def drive_of(operation: Operation, process: ProcessTree, space: SetupSpace) -> P
         )
     if operation.kind in OF_POCKETS:
         return _pocket(operation, process, feature, space)
-    if operation.kind == "rib_top":
-        return _rib_top(operation, feature, space)
+    if operation.kind in ("rib_top", "boss_top"):
+        return _free_top(operation, feature, space)
     if operation.kind == "island_top":
         return _island_top(operation, feature, space)
     if operation.kind in ("profile_rough", "profile_finish"):
@@ -335,7 +335,7 @@ def _wall_faces(feature: Feature, island: Feature | None) -> tuple[int, ...]:
     return (feature if island is None else island).with_role("wall", "corner", "floor_fillet")
 
 
-def _rib_top(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
+def _free_top(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
     tags, frame = feature.with_role("top"), space.setup.frame
     if not tags:
         raise Refused(f"{feature.id}: it has no top face; give it one or suppress {operation.id}")

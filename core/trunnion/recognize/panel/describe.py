@@ -16,7 +16,7 @@ from trunnion.geometry.facegraph import CONCAVE, FaceGraph
 from trunnion.model.feature import Feature, Recognition, Size
 from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, classify
-from trunnion.recognize.panel.features import make_island, make_rib, pocket_faces
+from trunnion.recognize.panel.features import make_boss, make_island, make_rib, pocket_faces
 from trunnion.recognize.panel.frame import flipped
 from trunnion.recognize.panel.pockets.rules import Island, Pocket
 from trunnion.recognize.panel.settings import PanelSettings
@@ -26,7 +26,7 @@ from trunnion.recognize.panel.slicing.slices import Slices
 from trunnion.units import rounded
 
 POCKETS = ("pocket", "open_pocket")
-DESCRIBABLE = (*POCKETS, "island", "rib")
+DESCRIBABLE = (*POCKETS, "island", "rib", "boss")
 """Kinds of features that faces alone make; holes, pits and outlines are more than their faces."""
 
 
@@ -46,6 +46,8 @@ def described(
         made = _pocket(view, feature, rows, found, graph)
     elif feature.kind == "island":
         made = _island(view, feature, rows, found)
+    elif feature.kind == "boss":
+        made = _boss(view, feature, rows)
     else:
         made = _rib(view, feature, rows, found)
     return replace(made, by_hand=True)
@@ -167,6 +169,15 @@ def _rib(view: PanelSide, feature: Feature, rows: Sequence[int], found: Recognit
         if _is_below(f) == view.below
     ]
     return make_rib(view, feature.id, level[0], pockets)
+
+
+def _boss(view: PanelSide, feature: Feature, rows: Sequence[int]) -> Feature:
+    level = _sorted(view, rows)[0]
+    if len(rows) != 1 or len(level) != 1:
+        raise BadInput(
+            f"{feature.id}: a boss is its top, one level face; its sides are the outline and walls of the pockets beside it"
+        )
+    return make_boss(view, feature.id, level[0])
 
 
 def _is_below(feature: Feature) -> bool:

@@ -14,6 +14,7 @@ from trunnion.recognize.panel.pockets.blends import is_rounding
 from trunnion.recognize.panel.pockets.rules import GraphFeatures, Island, Pocket
 from trunnion.recognize.panel.side import PanelSide
 from trunnion.recognize.panel.sizes import (
+    boss_sizes,
     corner_radius,
     island_sizes,
     pocket_sizes,
@@ -67,7 +68,7 @@ def in_rows(things: Iterable[T], centre: Callable[[T], tuple[float, float]]) -> 
 def make_features(
     view: PanelSide, shown: GraphFeatures, main: FaceGraph, numbers: FeatureNumbers
 ) -> SideFeatures:
-    """Return pockets, islands and ribs of one side; `main` is the graph in the recognition's frame."""
+    """Return pockets, islands, ribs and bosses of one side; `main` is the graph in the recognition's frame."""
 
     def middle(faces: Sequence[int]) -> tuple[float, float]:
         low, high = main.box_low[list(faces)].min(axis=0), main.box_high[list(faces)].max(axis=0)
@@ -91,6 +92,8 @@ def make_features(
     pockets = [c.pocket for _, c in named]
     for top in in_rows(shown.ribs, lambda r: middle((r,))):
         features.append(make_rib(view, numbers.next("rib"), top, pockets))
+    for top in in_rows(shown.bosses, lambda r: middle((r,))):
+        features.append(make_boss(view, numbers.next("boss"), top))
     return SideFeatures(features=tuple(features), findings=tuple(findings))
 
 
@@ -226,6 +229,19 @@ def make_rib(view: PanelSide, id: str, top: int, pockets: Sequence[Pocket]) -> F
         kind="rib",
         faces=(FaceRole(role="top", face=top + 1),),
         sizes=rib_sizes(view, top, floors),
+        attributes=attributes,
+    )
+
+
+def make_boss(view: PanelSide, id: str, top: int) -> Feature:
+    """Return the boss with a top: what is lower than the part's top, too wide for a rib and in no pocket. Its sides are the outline and
+    walls of the pockets beside it."""
+    attributes: dict[str, Size] = {"direction": (0.0, 0.0, -1.0)} if view.below else {}
+    return Feature(
+        id=id,
+        kind="boss",
+        faces=(FaceRole(role="top", face=top + 1),),
+        sizes=boss_sizes(view, top),
         attributes=attributes,
     )
 

@@ -22,7 +22,7 @@ POCKETS = ("pocket", "open_pocket")
 """Features that a hole in their floor or wall is nested in; on others it stands."""
 ROUNDED = 3
 """Decimals of mm that heights of holes above each other are ordered by: beyond is noise of the file."""
-CARRIERS = (*POCKETS, "island", "rib", HOLE)
+CARRIERS = (*POCKETS, "island", "rib", "boss", HOLE)
 """Features that are said of a hole that opens in one of their faces; the outline and the datum faces are not."""
 
 
@@ -79,7 +79,7 @@ class PanelHoles:
 
 
 def _surroundings(hole: Hole, owners: dict[int, Feature]) -> dict[str, Size]:
-    """Return what a hole opens in, `nested_in` a pocket or a wider hole, `on` an island or a rib, and the holes that it `crosses`."""
+    """Return what a hole opens in, `nested_in` a pocket or a wider hole, `on` an island, rib or boss, and the holes it `crosses`."""
     found: dict[str, Size] = {}
     carrier = next((owners[f] for f in hole.opens_in if f in owners), None)
     if carrier is not None:

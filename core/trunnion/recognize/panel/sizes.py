@@ -77,6 +77,16 @@ def rib_sizes(view: PanelSide, top: int, floors: Iterable[int]) -> dict[str, Siz
     return sizes
 
 
+def boss_sizes(view: PanelSide, top: int) -> dict[str, Size]:
+    """Return the sizes of a boss: the height of its top, how far that is below the part's, and its area in mm2."""
+    z = view.z(top)
+    return {
+        "top_z": main_z(view, z),
+        "below_top": rounded(view.height - z),
+        "area": rounded(float(view.graph.area[top])),
+    }
+
+
 def side_sizes(view: PanelSide, walls: Sequence[int], corners: Sequence[int]) -> dict[str, Size]:
     """Return the corner radius (0 when two walls meet in a sharp inner edge; none when nothing is hollow) and the leans."""
     sizes: dict[str, Size] = {}

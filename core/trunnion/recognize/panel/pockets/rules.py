@@ -62,15 +62,16 @@ class Pocket:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GraphFeatures:
-    """What the graph shows of one side: pockets with their islands, the tops of ribs, and what each top is."""
+    """What the graph shows of one side: pockets with their islands, the tops of ribs and of bosses, and what each top is."""
 
     pockets: tuple[Pocket, ...]
     tops: Tops
     ribs: tuple[int, ...]
+    bosses: tuple[int, ...]
 
 
 def pockets_of(view: PanelSide) -> GraphFeatures:
-    """Return the pockets, islands and ribs that the graph of one side shows."""
+    """Return the pockets, islands, ribs and bosses that the graph of one side shows."""
     tops = sort_tops(view)
     around = {floor: loops(view.graph, floor) for floor in tops.floors}
     outer = {floor: ring(view, floor, edges.get(0, ())) for floor, edges in around.items()}
@@ -128,17 +129,19 @@ def pockets_of(view: PanelSide) -> GraphFeatures:
             )
         )
     island_tops = {t for p in found for i in p.islands for t in i.tops}
-    narrow = tuple(
-        t
-        for t in tops.islands
-        if t not in island_tops and mean_width(view, t) <= view.settings.rib_width
-    )
+    free = [t for t in tops.islands if t not in island_tops]
+    narrow = tuple(t for t in free if mean_width(view, t) <= view.settings.rib_width)
     openings = [
         o
         for face in (*tops.highest, *tops.islands, *tops.ribs, *floors)
         for o in openings_in(view, face, set(owners))
     ]
-    return GraphFeatures(pockets=(*found, *openings), tops=tops, ribs=tops.ribs + narrow)
+    return GraphFeatures(
+        pockets=(*found, *openings),
+        tops=tops,
+        ribs=tops.ribs + narrow,
+        bosses=tuple(t for t in free if t not in narrow),
+    )
 
 
 def without(shown: GraphFeatures, done: set[int]) -> GraphFeatures:
