@@ -22,6 +22,7 @@ USES = (
     "spot",
     "countersink",
     "hole_mill",
+    "narrow",
     "interrupted",
 )
 END_MILL = "end mill"
@@ -48,7 +49,8 @@ class Cutter:
     """A catalogue cutter with what it is made for: ISO 513 groups and uses.
 
     Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot`, `countersink`, `hole_mill`
-    (end mills that mill small holes and nothing else) and `interrupted` (turning in the gaps between bosses).
+    (end mills for small holes), `narrow` (end mills for slots and pockets that no other one gets into) and `interrupted` (turning in the
+    gaps between bosses). An end mill for `hole_mill` or `narrow` alone is taken only where no other serves.
     """
 
     tool: Tool

@@ -2,7 +2,7 @@
 
 A deep pocket with tight corners often has no cutter that is slimmer than its corners and long enough. The ladder: a cutter exactly as
 round as the corner; then the slimmest that reaches, and the corner is left, named and measured by the proof; in roughing one that has less
-space to turn, then one that leaves more to rest roughing.
+space to turn, then one that leaves more to rest roughing. A slot narrower than every end mill for pockets gets one of the small ones.
 """
 
 from __future__ import annotations
@@ -13,16 +13,31 @@ from dataclasses import replace
 
 from trunnion.findings import Finding, face_tags, remark
 from trunnion.model.tool import Tool
-from trunnion.plan.panel.tasks import OperationTask, PanelPlanState, catalogue
+from trunnion.plan.panel.tasks import (
+    REST,
+    OperationTask,
+    PanelPlanState,
+    catalogue,
+    narrow_cutters,
+)
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.tool_choice import Candidates, ToolRequirement, candidates
+from trunnion.settings import Value
 from trunnion.units import trimmed
 
 MOST_MISSED = 0.6
 """Share of a pocket that roughing leaves to smaller cutters at most, where none gets into the rest of it."""
 
 
+NARROW_ALLOWANCE = 0.1
+"""mm that roughing leaves on the walls of a slot for a small end mill: more would be as wide as the cutter."""
+
+
 def best_fit(state: PanelPlanState, task: OperationTask) -> tuple[OperationTask, Candidates]:
-    """Return the task as it can be done, with its cutters; without any where nothing on the ladder fits."""
+    """Return the task as it can be done, with its cutters; without any where nothing on the ladder fits.
+
+    Where no step of it helps, the smallest cutters of the catalogue are asked as well: those for what no other gets into.
+    """
     if task.found is not None:
         return task, task.found
     tools, clearance = catalogue(state, task.stage), state.settings.reach_clearance
@@ -34,7 +49,36 @@ def best_fit(state: PanelPlanState, task: OperationTask) -> tuple[OperationTask,
         if found.tools:
             state.findings.append(_second_choice(task, wanted, why))
             return replace(task, requirement=requirement), found
-    return task, wanted
+    if task.stage.cutter == "face" or task.stage.cutter in REST:
+        return task, wanted
+    small, narrow = narrow_cutters(state), _with_small_allowance(state, task)
+    steps = [narrow.requirement, *(r for r, _ in _ladder(state, narrow))] if small else []
+    fits = [candidates(r, small, clearance, state.progress) for r in steps]
+    for requirement, found in zip(steps, fits, strict=True):
+        if found.tools:
+            why = "an end mill for narrow slots gets in"
+            state.findings.append(_second_choice(task, wanted, why))
+            return replace(narrow, requirement=requirement), found
+    return task, fits[0] if fits else wanted
+
+
+def _with_small_allowance(state: PanelPlanState, task: OperationTask) -> OperationTask:
+    """Return a roughing that leaves as little on walls as a small cutter's finishing takes, other tasks as they are."""
+    gain = state.settings.wall_allowance - NARROW_ALLOWANCE
+    if task.stage.cutter != "rough" or gain <= 0.0:
+        return task
+    usual = task.requirement
+    requirement = replace(
+        usual,
+        envelope_area=usual.envelope_area.offset(gain),
+        wanted=usual.wanted.offset(gain),
+        others=tuple((area.offset(gain), wanted.offset(gain)) for area, wanted in usual.others),
+    )
+    allowances: dict[str, Value] = {
+        WALL_ALLOWANCE: NARROW_ALLOWANCE,
+        FLOOR_ALLOWANCE: state.settings.floor_allowance,
+    }
+    return replace(task, requirement=requirement, choices=allowances)
 
 
 def _ladder(state: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
@@ -98,10 +142,13 @@ def with_floors_behind_roughing(state: PanelPlanState, tasks: Sequence[Operation
     A floor's cutter goes to the bottom at once: one that is slimmer than the last roughing cutter goes into stock that is as high as
     the pocket is deep, and above its flutes the neck and shank meet it.
     """
+    narrow = {t.name for t in narrow_cutters(state)}
     for task in tasks:
         tool, cleared = state.tools[task.id], _cleared(state, task, tasks)
         if (
             task.stage.cutter != "floor"
+            # No wider one gets to a floor that a cutter for narrow slots was chosen for.
+            or tool.name in narrow
             or tool.radius >= cleared
             or tool.flute_length >= task.height
         ):

@@ -148,6 +148,11 @@ def catalogue(state: PanelPlanState, stage: Stage) -> tuple[Tool, ...]:
     )
 
 
+def narrow_cutters(state: PanelPlanState) -> tuple[Tool, ...]:
+    """Return the small cutters for what no other one gets into."""
+    return state.shop.tools_for(state.material.iso_group, "narrow")
+
+
 def _face_tasks(
     state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
