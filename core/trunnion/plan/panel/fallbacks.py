@@ -18,9 +18,10 @@ from trunnion.plan.panel.tasks import (
     OperationTask,
     PanelPlanState,
     catalogue,
+    floor_distance,
     narrow_cutters,
 )
-from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE, WALL_DISTANCE
 from trunnion.plan.tool_choice import Candidates, ToolRequirement, candidates
 from trunnion.settings import Value
 from trunnion.units import trimmed
@@ -57,15 +58,18 @@ def best_fit(state: PanelPlanState, task: OperationTask) -> tuple[OperationTask,
     for requirement, found in zip(steps, fits, strict=True):
         if found.tools:
             why = "an end mill for narrow slots gets in"
+            if task.stage.cutter == "rough":
+                state.narrow.add(task.feature)
             state.findings.append(_second_choice(task, wanted, why))
             return replace(narrow, requirement=requirement), found
     return task, fits[0] if fits else wanted
 
 
 def _with_small_allowance(state: PanelPlanState, task: OperationTask) -> OperationTask:
-    """Return a roughing that leaves as little on walls as a small cutter's finishing takes, other tasks as they are."""
-    gain = state.settings.wall_allowance - NARROW_ALLOWANCE
-    if task.stage.cutter != "rough" or gain <= 0.0:
+    """Return a roughing that leaves as little on walls as a small cutter's finishing takes, and a floor after it that comes as near to
+    them; other tasks as they are."""
+    gain, rule = state.settings.wall_allowance - NARROW_ALLOWANCE, task.stage.cutter
+    if gain <= 0.0 or not (rule == "rough" or (rule == "floor" and task.feature in state.narrow)):
         return task
     usual = task.requirement
     requirement = replace(
@@ -74,10 +78,14 @@ def _with_small_allowance(state: PanelPlanState, task: OperationTask) -> Operati
         wanted=usual.wanted.offset(gain),
         others=tuple((area.offset(gain), wanted.offset(gain)) for area, wanted in usual.others),
     )
-    allowances: dict[str, Value] = {
-        WALL_ALLOWANCE: NARROW_ALLOWANCE,
-        FLOOR_ALLOWANCE: state.settings.floor_allowance,
-    }
+    allowances: dict[str, Value] = (
+        {
+            WALL_ALLOWANCE: NARROW_ALLOWANCE,
+            FLOOR_ALLOWANCE: state.settings.floor_allowance,
+        }
+        if rule == "rough"
+        else {WALL_DISTANCE: floor_distance(NARROW_ALLOWANCE)}
+    )
     return replace(task, requirement=requirement, choices=allowances)
 
 

@@ -48,7 +48,7 @@ from trunnion.plan.panel.tasks import (
     with_falling_sizes,
 )
 from trunnion.plan.panel.webs import thin_webs
-from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE, WALL_DISTANCE
 from trunnion.plan.prismatic.regions import SectionSource, SetupSpace, parent_of
 from trunnion.plan.process import process_of
 from trunnion.plan.sequence import OrderedOperation, ordered
@@ -239,7 +239,7 @@ def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]
     if task.choices is not None:
         choices = dict(task.choices)
     if stage.kind == "floor":
-        choices["plane.floor.wall_distance"] = floor_distance(settings)
+        choices.setdefault(WALL_DISTANCE, floor_distance(settings.wall_allowance))
     if task.half:
         choices[HALVES] = True
     rules = (stage.rule, *_tool_rules(task, tool, settings))

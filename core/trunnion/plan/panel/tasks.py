@@ -100,7 +100,8 @@ class PanelPlanState:
     """What is known while one setup is planned; `loaded` are the tools of the setups before, `progress` is looked at on the way, `choices`
     are a session's settings by full key, `holes` what the stages on holes have found out. Ids of features that two setups share: `halved`
     of those cut half from here and half from the other side, `both_ends` of holes that both widen, `bored` of those bored in the other,
-    `slopes` of those of which only what leans, and looks up here, is cut here too.
+    `slopes` of those of which only what leans, and looks up here, is cut here too. `narrow` are those that are roughed by an end mill for
+    narrow slots.
     `curved` returns the part's skin as the setup sees it, None where nobody has it; `freeform` is what the stages on leaning walls and
     curved floors have found out."""
 
@@ -121,6 +122,7 @@ class PanelPlanState:
     both_ends: set[str] = field(default_factory=set)
     bored: set[str] = field(default_factory=set)
     slopes: set[str] = field(default_factory=set)
+    narrow: set[str] = field(default_factory=set)
     curved: Callable[[], SurfaceSpace] | None = None
     freeform: Any = None
     progress: Progress = NO_PROGRESS
@@ -132,9 +134,9 @@ class PanelPlanState:
         return f"{own}-{self.space.setup.name}" if shared else own
 
 
-def floor_distance(settings: RouteSettings) -> float:
-    """Return what a floor's cutter keeps from the finished walls: it must not meet their allowance."""
-    return settings.wall_allowance + FLOOR_DISTANCE
+def floor_distance(wall_allowance: float) -> float:
+    """Return what a floor's cutter keeps from the finished walls (mm): it must not meet their allowance."""
+    return wall_allowance + FLOOR_DISTANCE
 
 
 def catalogue(state: PanelPlanState, stage: Stage) -> tuple[Tool, ...]:
@@ -272,7 +274,7 @@ def _floor_tasks(
         )
         strip = min((t.diameter - t.corner_radius for t in walls), default=0.0) - STRIP_OVERLAP
         inner = bands[-1].wanted.offset(-strip)
-        distance = floor_distance(state.settings) + _wider_foot(state, feature)
+        distance = floor_distance(state.settings.wall_allowance) + _wider_foot(state, feature)
         whole = ToolRequirement(
             depth=_depth(state, bands),
             envelope_area=_kept_off(bands[-1].boundary, distance),

@@ -45,6 +45,7 @@ from trunnion.plan.panel.tasks import (
     OperationTask,
     PanelPlanState,
 )
+from trunnion.plan.prismatic.drive import WALL_DISTANCE
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
 from trunnion.settings import Value
 from trunnion.shop import Stage
@@ -93,7 +94,7 @@ def floor_tasks(
                 f"floor-{pocket.feature.id}",
                 requirement,
                 tuple(f.face for f in floors),
-                {"plane.floor.wall_distance": distance},
+                {WALL_DISTANCE: distance},
                 engagement,
             )
         )
