@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import cadquery as cq
 import pytest
 
 import samples
@@ -52,3 +53,13 @@ def test_a_dome_on_a_plate_is_taken_for_a_curved_part_and_a_panel_is_not() -> No
 
     assert best(samples.dome_on_a_plate_shape()) == "surface"
     assert best(samples.two_pockets_and_a_rib_shape()) == "panel"
+
+
+def test_a_top_that_the_part_hangs_over_is_no_boss_whatever_stands_around_it() -> None:
+    recess = cq.Workplane("XY").box(30.0, 110.0, 20.0).translate((0.0, 0.0, -2.0))
+    block = cq.Workplane("XY").box(200.0, 120.0, 40.0).cut(recess)
+    block = block.union(cq.Workplane("XY").box(16.0, 20.0, 10.0).translate((0.0, 0.0, -8.0)))
+    found = recognized(block.val().wrapped)
+    assert "boss" not in found.counts() and "rib" not in found.counts()
+    (told,) = [f for f in found.findings if f.code == "panel.undercut"]
+    assert len(told.where) >= 2

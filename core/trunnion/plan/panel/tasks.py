@@ -448,7 +448,10 @@ def _top_areas(
     if feature.kind != "island" or (pocket is not None and space.is_freeform(pocket)):
         free = touching(space.free_near(z + tolerance.OFF_PLANE, wanted), wanted)
         # Under a wall that leans over its end no cutter gets to a top.
-        return free, wanted.minus(space.hanging_over(z + tolerance.OFF_PLANE, wanted))
+        seen = wanted.minus(space.hanging_over(z + tolerance.OFF_PLANE, wanted))
+        if not seen:
+            raise Refused(f"{feature.id}: the part hangs over all of its top; cut it by hand")
+        return free, seen
     over = (
         [b for b in state.bands.get(pocket.id, ()) if b.bottom <= z + tolerance.SEW]
         if pocket

@@ -347,6 +347,8 @@ def _free_top(operation: Operation, feature: Feature, space: SetupSpace) -> Plan
     for tag in tags[1:]:
         wanted = wanted.union(space.part.face_outline(frame, tag))
     wanted = wanted.minus(space.hanging_over(z + tolerance.OFF_PLANE, wanted))
+    if not wanted:
+        raise Refused(f"{feature.id}: the part hangs over all of its top; suppress {operation.id}")
     boundary = _free_over(z, wanted, space)
     walls = tuple(
         WallGuide(curve=run, top=space.top, bottom=z, fillet=0.0, faces=())

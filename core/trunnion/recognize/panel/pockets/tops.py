@@ -65,11 +65,11 @@ def is_curved_floor(view: PanelSide, face: int) -> bool:
 def _sort(view: PanelSide, face: int) -> str:
     if view.z(face) >= view.height - SLIVER:
         return "highest"
+    if view.undercut(face):
+        return "undercut"
     share = foot_share(view, face)
     if share == 0.0:
         return "islands"
-    if view.undercut(face):
-        return "undercut"
     return (
         "ribs"
         if share < FOOT_SHARE and mean_width(view, face) <= view.settings.rib_width
