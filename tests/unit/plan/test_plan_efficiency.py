@@ -169,7 +169,7 @@ def test_what_is_written_of_a_plan_has_its_estimate(tmp_path, monkeypatch):
     class Watched:
         __enter__ = __exit__ = nothing
 
-    part = SimpleNamespace(watched=lambda _: Watched(), mesh=nothing)
+    part = SimpleNamespace(watched=lambda _: Watched(), mesh=nothing, picture_chord=1.0)
     monkeypatch.setattr(Engine, "context_of", lambda *_: SimpleNamespace(part=part))
     monkeypatch.setattr(Engine, "states", lambda *_: {"verify": "done"})
     monkeypatch.setattr(Engine, "save", nothing)

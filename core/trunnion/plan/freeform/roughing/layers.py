@@ -78,19 +78,20 @@ def plane_drive_of(
     process: ProcessTree | None = None,
 ) -> PlaneDrive:
     """Return the drive of a plane operation on a part of curved surfaces, in the cutting frame; `process` says what was cut before."""
+    highest = float(stock.heights.max())
     if operation.kind == REST_LAND:
         before = (
             [o for o in process.operations if o.kind == LAND and not o.suppressed]
             if process
             else []
         )
-        return land_drive(operation, space, before, float(stock.heights.max()))
+        return progress.aside(lambda _: land_drive(operation, space, before, highest))
     if operation.kind == LAND:
-        return land_drive(operation, space, (), float(stock.heights.max()))
+        return progress.aside(lambda _: land_drive(operation, space, (), highest))
     if operation.kind == "rough":
         return _layers(operation, space, stock, progress)
     if operation.kind == "profile_finish":
-        return outline_drive(operation, space)
+        return progress.aside(lambda _: outline_drive(operation, space))
     raise Refused(
         f"{operation.id}: parts of curved surfaces have no drive for plane operations of kind {operation.kind}"
     )
