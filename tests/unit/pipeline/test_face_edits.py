@@ -127,7 +127,7 @@ def test_what_can_not_be_is_refused_in_a_line(recognised, edit, words):
 
 
 def test_families_say_which_features_may_have_other_faces():
-    assert describable_kinds("panel") == ("pocket", "open_pocket", "island", "rib")
+    assert describable_kinds("panel") == ("pocket", "open_pocket", "island", "rib", "boss")
     assert describable_kinds("surface") == describable_kinds("no such family") == ()
 
 

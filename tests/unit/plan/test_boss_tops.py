@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import cadquery as cq
@@ -9,6 +10,8 @@ import numpy as np
 import pytest
 
 from trunnion.pipeline import Engine
+from trunnion.recognize.panel import PanelFamily
+from trunnion.recognize.panel.settings import PanelSettings
 
 WEB, HIGH = 8.0, 24.0
 """Thickness of the web that carries the bosses, and height of the highest one, mm."""
@@ -47,6 +50,16 @@ def test_each_low_top_is_a_boss_and_is_cut_from_its_side(seed, tmp_path):
     cut = {o.feature: o.setup for o in session.process.operations if o.kind == "boss_top"}
     assert cut.keys() == {b.id for b in bosses}
     assert len({cut[b.id] for b in bosses}) == len(set(sides))
+    for boss in bosses:
+        # A person who makes a boss of its top gets what recognition gives.
+        bare = replace(boss, sizes={}, attributes={})
+        graph = engine.context_of(session).part.graph()
+        made = PanelFamily().described(bare, session.recognition, graph, PanelSettings())
+        assert (made.faces, made.sizes, made.attributes) == (
+            boss.faces,
+            boss.sizes,
+            boss.attributes,
+        )
 
 
 @pytest.mark.parametrize("seed", [1])

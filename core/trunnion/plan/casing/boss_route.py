@@ -30,7 +30,6 @@ from trunnion.plan.freeform.lands import (
     lands_of,
 )
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.plan.prismatic.drive import WALL_DISTANCE
 from trunnion.plan.setups.frames import Direction
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.recognize.casing.kinds import ROOT_FILLET, SIDE, TOP
@@ -113,7 +112,7 @@ def _plan_top(state: CasingPlanState, stage: Stage, boss: Feature, ground: Devel
             LATERAL: clearances.lateral,
             AROUND_TOOL: clearances.around,
             ABOVE_TOOL: clearances.above,
-            WALL_DISTANCE: 0.0,
+            "plane.floor.wall_distance": 0.0,
         },
         why=f"{tool.name}: up to {trimmed(stock, 2)} mm stand on the top, taken in steps of {trimmed(depth, 2)} mm.",
         direction=direction,

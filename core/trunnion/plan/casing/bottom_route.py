@@ -24,7 +24,7 @@ from trunnion.plan.development.drives import (
 from trunnion.plan.development.ground import DevelopedGround
 from trunnion.plan.freeform.cutters.choice import named
 from trunnion.plan.freeform.lands import ABOVE_TOOL, AROUND_TOOL, STOCK
-from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE, WALL_DISTANCE
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.recognize.casing.kinds import BOTTOM, POCKET
 from trunnion.settings import Value
@@ -142,7 +142,7 @@ def plan_floor(state: CasingPlanState, stage: Stage, pocket: Feature) -> None:
             STOCK: stock,
             AROUND_TOOL: cutter_clearance(state, ground, tool, pocket, 0.0),
             ABOVE_TOOL: state.route.reach_clearance,
-            WALL_DISTANCE: 0.0,
+            "plane.floor.wall_distance": 0.0,
         },
         why=f"{tool.name}: {trimmed(width, 2)} mm between passes on a radius of {trimmed(ground.least_radius, 1)} mm.",
     )

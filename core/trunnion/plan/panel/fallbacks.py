@@ -15,13 +15,14 @@ from trunnion.findings import Finding, face_tags, remark
 from trunnion.model.tool import Tool
 from trunnion.plan.panel.tasks import (
     REST,
+    WALL_DISTANCE,
     OperationTask,
     PanelPlanState,
     catalogue,
     floor_distance,
     narrow_cutters,
 )
-from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE, WALL_DISTANCE
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.tool_choice import Candidates, ToolRequirement, candidates
 from trunnion.settings import Value
 from trunnion.units import trimmed

@@ -42,13 +42,14 @@ from trunnion.plan.panel.sides import shared_out
 from trunnion.plan.panel.tasks import (
     DEPENDENT,
     REST,
+    WALL_DISTANCE,
     OperationTask,
     PanelPlanState,
     floor_distance,
     with_falling_sizes,
 )
 from trunnion.plan.panel.webs import thin_webs
-from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE, WALL_DISTANCE
+from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.prismatic.regions import SectionSource, SetupSpace, parent_of
 from trunnion.plan.process import process_of
 from trunnion.plan.sequence import OrderedOperation, ordered

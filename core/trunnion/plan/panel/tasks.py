@@ -57,6 +57,9 @@ SHARP = 0.02
 FOOT_RING = 0.5
 """mm around an island that the cutter of its foot has to get to, all round."""
 
+WALL_DISTANCE = "plane.floor.wall_distance"
+"""Key of a floor's choice that holds what its cutter keeps from finished walls, mm."""
+
 REST = ("rest", "rest_layers")
 """Rules for the cutters of rest roughing: without one what is left stays to finishing."""
 

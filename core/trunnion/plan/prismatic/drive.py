@@ -140,9 +140,6 @@ def foot_clearance(fillet: float, corner_radius: float, above: float) -> float:
 WALL_ALLOWANCE, FLOOR_ALLOWANCE = "route.wall_allowance", "route.floor_allowance"
 """Keys of an operation's choices that hold what it leaves on walls and floors, mm."""
 
-WALL_DISTANCE = "plane.floor.wall_distance"
-"""Key of a floor's choice that holds what its cutter keeps from finished walls, mm."""
-
 HALF_OVERLAP = 1.0
 """mm that halves of the outline cut from both sides go on past its middle, so that no film stays between them."""
 

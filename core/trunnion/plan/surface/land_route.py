@@ -25,7 +25,6 @@ from trunnion.plan.freeform.lands import (
     lands_of,
 )
 from trunnion.plan.freeform.reach import AreaSamples, reached, samples_on
-from trunnion.plan.prismatic.drive import WALL_DISTANCE
 from trunnion.plan.surface.plan_state import SurfacePlanState, face_name
 from trunnion.progress import Progress
 from trunnion.settings import Value
@@ -180,6 +179,6 @@ def _add(
         tags,
         depth,
         width,
-        {STOCK: stock if kind == LAND else 0.0, WALL_DISTANCE: 0.0, **choices},
+        {STOCK: stock if kind == LAND else 0.0, "plane.floor.wall_distance": 0.0, **choices},
         rules,
     )

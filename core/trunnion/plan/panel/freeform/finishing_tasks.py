@@ -42,10 +42,10 @@ from trunnion.plan.panel.tasks import (
     FLOOR_DISTANCE,
     NEAR_FLOOR,
     SHARP,
+    WALL_DISTANCE,
     OperationTask,
     PanelPlanState,
 )
-from trunnion.plan.prismatic.drive import WALL_DISTANCE
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
 from trunnion.settings import Value
 from trunnion.shop import Stage
