@@ -30,7 +30,6 @@ from trunnion.units import trimmed
 MOST_MISSED = 0.6
 """Share of a pocket that roughing leaves to smaller cutters at most, where none gets into the rest of it."""
 
-
 NARROW_ALLOWANCE = 0.1
 """mm that roughing leaves on the walls of a slot for a small end mill: more would be as wide as the cutter."""
 
@@ -54,16 +53,22 @@ def best_fit(state: PanelPlanState, task: OperationTask) -> tuple[OperationTask,
     if task.stage.cutter == "face" or task.stage.cutter in REST:
         return task, wanted
     small, narrow = narrow_cutters(state), _with_small_allowance(state, task)
-    steps = [narrow.requirement, *(r for r, _ in _ladder(state, narrow))] if small else []
-    fits = [candidates(r, small, clearance, state.progress) for r in steps]
-    for requirement, found in zip(steps, fits, strict=True):
+    if not small:
+        return task, wanted
+    smallest = candidates(narrow.requirement, small, clearance, state.progress)
+    for requirement in (narrow.requirement, *(r for r, _ in _ladder(state, narrow))):
+        found = (
+            smallest
+            if requirement is narrow.requirement
+            else candidates(requirement, small, clearance, state.progress)
+        )
         if found.tools:
             why = "an end mill for narrow slots gets in"
             if task.stage.cutter == "rough":
                 state.narrow.add(task.feature)
             state.findings.append(_second_choice(task, wanted, why))
             return replace(narrow, requirement=requirement), found
-    return task, fits[0] if fits else wanted
+    return task, smallest
 
 
 def _with_small_allowance(state: PanelPlanState, task: OperationTask) -> OperationTask:
