@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 
+import cadquery as cq
 import numpy as np
 import pytest
 from pytest import approx
@@ -17,7 +19,7 @@ from trunnion.model.setup import Setup
 from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline import Engine
 from trunnion.plan.freeform.roughing.heights import HeightMap
-from trunnion.plan.freeform.roughing.hollows import hollow_depths
+from trunnion.plan.freeform.roughing.hollows import are_opened, hollow_depths
 from trunnion.plan.freeform.roughing.layers import remaining_on_walls
 from trunnion.plan.freeform.space import SurfaceSpace
 
@@ -104,3 +106,49 @@ def test_what_a_coarse_map_leaves_is_in_the_data_of_the_outlines_finish():
         (outline,) = (o for o in process.operations if o.kind == "profile_finish")
         widths.append(outline.data.width)
     assert widths[1] - widths[0] == approx(0.75 * math.sqrt(2.0))
+
+
+def grooved(width, deep=16.0):
+    """Return the shape of a block with two grooves with round bottoms."""
+    round_bottom = cq.Workplane("YZ").circle(0.5 * width).extrude(62.0)
+    sides = cq.Workplane().box(62.0, width, deep, centered=(False, True, False))
+    groove = sides.translate((0.0, 0.0, 0.5 * width)).union(round_bottom)
+    block = cq.Workplane().box(60.0, 50.0, 24.0, centered=False)
+    for y in (14.0, 36.0):
+        block = block.cut(groove.translate((-1.0, y, 24.0 - deep + 0.5 * width)))
+    return block.val().wrapped
+
+
+def unroughed(width):
+    """Return what a route says of the hollows of a grooved block that no roughing cutter comes to."""
+    engine = Engine()
+    session = engine.open(written(grooved(width), name="grooves"))
+    session = engine.with_choices(session, {"recognize.family": "surface"})
+    route = engine.run(session, "route").process
+    return [f for f in route.findings if f.code == "route.not-roughed"]
+
+
+def test_grooves_that_are_too_narrow_for_every_roughing_cutter_are_told_with_the_cutter_they_need():
+    (told,) = unroughed(5.0)
+    # Of a cutter and what roughing leaves on both walls, 0.8 mm each, most goes into 5 mm; the round bottom is 16 mm deep.
+    diameter, deep = (
+        float(re.search(pattern, told.text)[1])
+        for pattern in (r"one of D ([\d.]+)", r"reaches (\d+) mm")
+    )
+    assert 1.5 <= diameter <= 5.0 - 2.0 * 0.8 and 13.0 <= deep <= 16.0
+    area = float(re.search(r"([\d.]+) mm2", told.text)[1])
+    walls = 2 * 60.0 * (2 * 13.5 + math.pi * 2.5)
+    assert 0.7 * walls < area <= walls
+    assert "such a cutter" in told.remedy
+
+
+def test_grooves_that_a_roughing_cutter_goes_into_are_not_told():
+    assert not unroughed(14.0)
+
+
+def test_what_a_disc_comes_to_is_above_its_closing_and_above_where_roughing_ends():
+    space = space_of(bowl(20.0, 16.0, 8.0, 6.0), 20.0, 16.0, 8.0)
+    # A disc of 4 mm comes down to 8 - sqrt(36 - 16) = 3.53 over the middle of the bowl.
+    points = np.array([[10.0, 8.0, z] for z in (3.0, 3.7, 7.0)])
+    assert are_opened(space, 0.0, points, 4.0).tolist() == [False, True, True]
+    assert are_opened(space, 5.0, points, 4.0).tolist() == [False, False, True]

@@ -21,6 +21,15 @@ from trunnion.settings import Value, choose
 from trunnion.shop import Shop, Stage
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RoughingSide:
+    """What has been roughed from a direction: down to which height (mm) in its cutting frame, with which smallest cutter."""
+
+    space: SurfaceSpace
+    bottom: float
+    tool: Tool
+
+
 @dataclass(slots=True)
 class SurfacePlanState:
     """What is known while one setup is planned; `unsampled` are the faces so small that no position of their area lies on them, `hanging`
@@ -40,6 +49,7 @@ class SurfacePlanState:
     findings: list[Finding] = field(default_factory=list)
     unsampled: set[int] = field(default_factory=set)
     hanging: set[int] = field(default_factory=set)
+    roughing_sides: list[RoughingSide] = field(default_factory=list)
 
     def cutters(self, use: str) -> tuple[Tool, ...]:
         """Return the catalogue's cutters for a use and the blank's material."""

@@ -12,7 +12,7 @@ from trunnion.plan.freeform.reach import samples_on
 from trunnion.plan.freeform.roughing.hollows import hollow_depths
 from trunnion.plan.freeform.roughing.layers import remaining_on_walls
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.plan.surface.plan_state import SurfacePlanState
+from trunnion.plan.surface.plan_state import RoughingSide, SurfacePlanState
 from trunnion.plan.surface.settings import SurfaceRouteSettings
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.progress import Progress
@@ -73,6 +73,7 @@ def plan_roughing(
             )
             _add_rough(state, "rest", f"{name}-{n}", rest, space, bottom, why)
         tool, n = rest, n + 1
+    state.roughing_sides.append(RoughingSide(space=space, bottom=bottom, tool=tool))
 
 
 def _hollows(state: SurfacePlanState, space: SurfaceSpace, tool: Tool, progress: Progress) -> float:

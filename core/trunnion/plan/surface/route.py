@@ -36,6 +36,7 @@ from trunnion.plan.surface.land_route import plan_lands
 from trunnion.plan.surface.order import in_order
 from trunnion.plan.surface.outline_route import plan_outline
 from trunnion.plan.surface.plan_state import SurfacePlanState
+from trunnion.plan.surface.roughing_findings import report_hollows
 from trunnion.plan.surface.roughing_route import plan_roughing, roughing_reach
 from trunnion.plan.surface.settings import SurfaceRouteSettings
 from trunnion.plan.surface.slivers import sliver_findings, slivers_of, with_slivers
@@ -166,6 +167,7 @@ def _plan(state: SurfacePlanState, progress: Progress) -> None:
             1,
         ):
             plan_roughing(state, side.space, side.bottom, f"side-{n}", progress.part(0.98, 1.0))
+    report_hollows(state, areas, progress)
 
 
 def _add_slivers(state: SurfacePlanState) -> None:

@@ -11,6 +11,7 @@ import math
 import numpy as np
 from scipy.ndimage import minimum_filter
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.space import SurfaceSpace
@@ -27,12 +28,36 @@ def hollow_depths(
 ) -> Floats:
     """Return how deep (k,) mm the part lies below a level disc of a radius (mm) that comes as low as it can over points (k, 3).
 
-    Points and depths are in the cutting frame. Between the grid's positions the disc is taken to be as low as at the lowest near by, so
-    a hollow is never deeper than this says, and one that is wider than the disc by less than a cell may be told as open.
+    Points and depths are in the cutting frame. A hollow is at least as deep as this says: see `lowest_disc`.
+    """
+    over = space.skin.drop.drop(points[:, :2], level_disc(0.0), float(space.low[2]), progress)
+    return np.maximum(lowest_disc(space, points[:, :2], radius, progress) - over, 0.0)
+
+
+def are_opened(
+    space: SurfaceSpace,
+    bottom: float,
+    points: Floats,
+    radius: float,
+    progress: Progress = NO_PROGRESS,
+) -> Bools:
+    """Return which points (k, 3) beside the part a level disc of a radius (mm) comes to on its way down to a height: what lies there can
+    be roughed away. Points are in the cutting frame."""
+    lowest = lowest_disc(space, points[:, :2], radius, progress)
+    return np.asarray((points[:, 2] > bottom - tolerance.SEW) & (points[:, 2] > lowest))
+
+
+def lowest_disc(
+    space: SurfaceSpace, points: Floats, radius: float, progress: Progress = NO_PROGRESS
+) -> Floats:
+    """Return how low (k,) a level disc of a radius (mm) comes that lies over points (k, 2) somewhere: the closing of the part's heights.
+
+    Between the grid's positions the disc is taken to be as low as at the lowest near by, so it comes no lower than this says, and a hollow
+    that is wider than the disc by less than a cell may be told as open.
     """
     if not len(points):
         return np.zeros(0)
-    low, high = points[:, :2].min(axis=0) - radius, points[:, :2].max(axis=0) + radius
+    low, high = points.min(axis=0) - radius, points.max(axis=0) + radius
     cell = max(radius / CELLS, math.sqrt(float(np.prod(high - low)) / MOST_SAMPLES))
     count = np.ceil((high - low) / cell).astype(int) + 1
     positions = low + cell * np.argwhere(np.ones(tuple(count), dtype=bool))
@@ -44,9 +69,8 @@ def hollow_depths(
     closed = minimum_filter(
         disc, footprint=_disc(radius / cell + math.sqrt(2.0)), mode="constant", cval=np.inf
     )
-    row = np.clip(np.rint((points[:, :2] - low) / cell).astype(int), 0, count - 1)
-    over = space.skin.drop.drop(points[:, :2], level_disc(0.0), lowest, progress)
-    return np.maximum(closed[row[:, 0], row[:, 1]] - over, 0.0)
+    row = np.clip(np.rint((points - low) / cell).astype(int), 0, count - 1)
+    return np.asarray(closed[row[:, 0], row[:, 1]])
 
 
 def _disc(radius: float) -> Bools:
