@@ -20,6 +20,7 @@ from trunnion.part.shape.gap import least_gap
 from trunnion.plan.size import size_table
 from trunnion.progress import NO_PROGRESS
 from trunnion.recognize.impeller import ImpellerFamily
+from trunnion.recognize.impeller.lines import MeridianCurve
 from trunnion.recognize.impeller.settings import CLOCKWISE, ImpellerSettings
 
 PATIENT = ReadLimits(seconds=1000.0)
@@ -204,3 +205,24 @@ def test_a_closed_wheel_says_that_its_passages_are_covered() -> None:
     codes = {f.code: f for f in found.findings}
     assert codes["impeller.covered"].text.startswith("the wheel is closed: its 14 blades stand")
     assert {f"face {t}" for t in found.unexplained} <= set(codes["impeller.unexplained"].where)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_foot_on_a_meridian_is_the_nearest_of_all_its_pieces(seed):
+    """Against every piece in turn, the plain way."""
+    draw = np.random.default_rng(seed)
+    angle = np.linspace(0.1, 1.4, 40) + draw.uniform(-0.01, 0.01, 40)
+    curve = MeridianCurve(
+        point=np.column_stack([60.0 - 50.0 * np.cos(angle), 40.0 * np.sin(angle)])
+    )
+    points = draw.uniform((0.0, -10.0), (80.0, 60.0), (200, 2))
+    feet, along = curve.foot(points)
+    for point, foot, way in zip(points, feet, along, strict=True):
+        start, step = curve.point[:-1], np.diff(curve.point, axis=0)
+        share = np.clip(((point - start) * step).sum(axis=1) / (step * step).sum(axis=1), 0.0, 1.0)
+        away = np.linalg.norm(point - start - share[:, None] * step, axis=1)
+        assert np.linalg.norm(point - foot) == pytest.approx(away.min(), abs=1e-9)
+        row = int(np.searchsorted(curve.along, way, side="right")) - 1
+        row = min(row, len(step) - 1)
+        on = start[row] + step[row] * (way - curve.along[row]) / np.linalg.norm(step[row])
+        assert on == pytest.approx(foot, abs=1e-6)

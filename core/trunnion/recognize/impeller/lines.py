@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import FaceGraph
@@ -140,15 +141,18 @@ class MeridianCurve:
 
     def foot(self, points: Floats) -> tuple[Floats, Floats]:
         """Return the nearest points of the curve (k, 2) to points (k, 2) of the meridian, and how far along it these lie (k,) mm."""
-        start, step = self.point[:-1], np.diff(self.point, axis=0)
+        best = self._pieces.query_nearest(shapely.points(points), all_matches=False)[1]
+        start, step = self.point[best], self.point[best + 1] - self.point[best]
         square = np.maximum((step * step).sum(axis=1), 1e-24)
-        share = ((points[:, None] - start) * step).sum(axis=2) / square
-        share = np.clip(share, 0.0, 1.0)
-        feet = start + share[..., None] * step
-        best = np.linalg.norm(points[:, None] - feet, axis=2).argmin(axis=1)
-        row = np.arange(len(points))
-        along = self.along[best] + share[row, best] * np.sqrt(square[best])
-        return feet[row, best], along
+        share = np.clip(((points - start) * step).sum(axis=1) / square, 0.0, 1.0)
+        return start + share[:, None] * step, self.along[best] + share * np.sqrt(square)
+
+    @cached_property
+    def _pieces(self) -> shapely.STRtree:
+        """The straight pieces between neighbouring points, to be searched by place."""
+        return shapely.STRtree(
+            shapely.linestrings(np.stack([self.point[:-1], self.point[1:]], axis=1))
+        )
 
     def directions(self, points: Floats) -> tuple[Floats, Floats]:
         """Return the directions (k, 2) of the flow, and square to it to the side where blades stand, beside points (k, 2)."""
