@@ -56,3 +56,19 @@ def test_a_slot_that_nothing_gets_into_is_told_with_the_smallest_that_was_tried(
     session = engine.run(engine.open(tmp_path / "deep.step"), "route")
     (told, *_) = [f for f in session.findings() if f.code == "route.no-cutter"]
     assert "20" in told.text and "reaches" in told.text
+
+
+@pytest.mark.parametrize("width", (3.1, 3.33, 3.6, 3.9))
+@pytest.mark.parametrize("aside", (0.0, 0.17, 0.31))
+def test_a_slot_between_two_rows_of_cells_is_roughed_before_its_walls(width, aside, tmp_path):
+    """No cell of the stock's field had its middle in what is left of such a slot without its rim: it counted as cleared, and the cutter
+    of the walls went in full."""
+    plate = cq.Workplane("XY").box(60.0, 40.0, 10.0, centered=(True, True, False))
+    slot = cq.Workplane("XY").slot2D(20.0, width).extrude(10.0).translate((0.0, aside, 0.0))
+    cq.exporters.export(plate.cut(slot), str(tmp_path / "slot.step"))
+    engine = Engine()
+    session = engine.run(engine.open(tmp_path / "slot.step"), "toolpath")
+    (pocket,) = session.recognition.of_kind("pocket")
+    rough = [o.id for o in session.process.operations if o.kind == "rough"]
+    laid = {p.operation for p in session.paths if len(p.path)}
+    assert any(o.startswith(f"rough-{pocket.id}") and o in laid for o in rough)

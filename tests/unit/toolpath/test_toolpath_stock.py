@@ -110,3 +110,25 @@ def test_a_cutter_smaller_than_a_cell_removes_nothing_for_certain() -> None:
         np.zeros((1, 2)),
     )
     assert not heights.any()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_strip_of_any_width_is_clear_only_where_nothing_stands_over_it(seed: int) -> None:
+    """Also one so narrow that no cell has its middle in it: a rib's top between two rows of cells counted as clear."""
+    draw = np.random.default_rng(seed)
+    stock = PlanningStock.of(BLANK, SETUP)
+    x, y = draw.uniform(5.0, 40.0), draw.uniform(5.0, 35.0)
+    strip = Region.rectangle(x, y, x + draw.uniform(0.5, 15.0), y + draw.uniform(0.02, 0.9))
+    assert not stock.is_clear(1.9, strip)
+    assert stock.is_clear(2.1, strip)
+    builder = PathBuilder(mill(10), cutting(4, 4), stock, SETUP, 2.0)
+    builder.rapid((-10, y, 50))
+    builder.line((-10, y, -3), 500.0)
+    builder.line((70, y, -3), 500.0)
+    after = stock.after(builder.finished(), mill(10))
+    assert after.is_clear(-2.9, strip) and not after.is_clear(-3.1, strip)
+
+
+def test_beside_the_blank_everything_is_clear() -> None:
+    stock = PlanningStock.of(BLANK, SETUP)
+    assert stock.is_clear(-30.0, Region.rectangle(70.0, 10.0, 80.0, 10.1))

@@ -247,15 +247,16 @@ class PlanningStock:
         )
 
     def is_clear(self, z: float, area: Region) -> bool:
-        """Return whether no cell in an area is higher than `z`; an area without cells is."""
+        """Return whether no cell in an area is higher than `z`: none with its middle in it, or where it is too narrow to hold a middle,
+        none that it touches. Beside the field nothing stands."""
         if not area:
             return True
-        some = self._above(z, area)
-        # Most areas that are not clear show it at a few positions; only then are all of them looked at.
-        few = some[:: max(1, len(some) // 64)]
-        return not (len(few) and area.contains(few).any()) and not (
-            len(some) and area.contains(some).any()
-        )
+        if _holds_any(area, self._above(z, area)):
+            return False
+        if _holds_any(area, self._above(-math.inf, area)):
+            return True
+        touched = area.offset(heightfield.HALF_DIAGONAL * self.cell)
+        return not _holds_any(touched, self._above(z, touched))
 
     def positions_above(self, z: float, area: Region) -> Floats:
         """Return the centres (k, 2) of the cells in an area that are higher than `z`."""
@@ -284,6 +285,12 @@ class PlanningStock:
     def box(self) -> tuple[Floats, Floats]:
         """Return the lowest and highest corner (2,) of the field."""
         return self.corner, self.corner + self.cell * np.array(self.field.shape)
+
+
+def _holds_any(area: Region, points: Floats) -> bool:
+    """Return whether some of points (k, 2) are in an area. Most areas that hold any show it at a few; only then are all looked at."""
+    few = points[:: max(1, len(points) // 64)]
+    return any(len(some) and bool(area.contains(some).any()) for some in (few, points))
 
 
 ARC_CHORD = 0.02
