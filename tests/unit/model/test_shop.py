@@ -126,7 +126,7 @@ def test_a_machine_has_the_travel_and_the_spindle_of_its_file():
 
 def test_the_typical_plan_of_panels_faces_first_and_finishes_the_outline_last():
     stages = [s.kind for s in load_shop().plan_for("panel").stages]
-    assert stages[0] == "face" and stages[-1] == "profile_finish"
+    assert stages[0] == "face" and stages[-2:] == ["profile_finish", "corner_finish"]
 
 
 PLAN = """

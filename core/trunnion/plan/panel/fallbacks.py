@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from trunnion.findings import Finding, face_tags, remark
-from trunnion.model.tool import Tool
+from trunnion.plan.panel.outline_tasks import without_corners
 from trunnion.plan.panel.tasks import (
     REST,
     WALL_DISTANCE,
@@ -98,6 +98,13 @@ def _with_small_allowance(state: PanelPlanState, task: OperationTask) -> Operati
 def _ladder(state: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequirement, str]]:
     """Return what may be requested instead, best first, each with what becomes of it in words."""
     requirement, rule = task.requirement, task.stage.cutter
+    if rule in ("profile_rough", "profile_finish"):
+        open_corners = without_corners(state, requirement, catalogue(state, task.stage))
+        return (
+            []
+            if open_corners is None
+            else [(open_corners, "its inner corners are left to slimmer cutters")]
+        )
     if rule in ("rough", "layers"):
         tight = replace(requirement, spare=1.0)
         return [
@@ -114,7 +121,7 @@ def _ladder(state: PanelPlanState, task: OperationTask) -> list[tuple[ToolRequir
     if rule == "wall":
         loose = replace(requirement, radius=0.0, missable=state.settings.missable, cusps=False)
         return [*ladder, (loose, "its corners are left to another cutter")]
-    slimmest, before = _slimmest(state, task), _before(state, task)
+    slimmest, before = _slimmest(state, task), state.tool_before(rule, task.feature)
     if before is not None and slimmest < before.radius:
         coarser = replace(requirement, radius=slimmest, missable=1.0, cusps=False, near=0.0)
         ladder.append(
@@ -133,11 +140,6 @@ def _slimmest(state: PanelPlanState, task: OperationTask) -> float:
         open_to_all, catalogue(state, task.stage), state.settings.reach_clearance, state.progress
     )
     return min((t.radius for t in found.tools), default=math.inf)
-
-
-def _before(state: PanelPlanState, task: OperationTask) -> Tool | None:
-    """Return the cutter that was in a feature's corners before."""
-    return state.tools.get(f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}")
 
 
 def _second_choice(task: OperationTask, wanted: Candidates, why: str) -> Finding:

@@ -15,6 +15,7 @@ from trunnion.plan.panel.freeform.overhang_tasks import overhang_rim_tasks
 from trunnion.plan.panel.freeform.roughing_tasks import layer_tasks, rest_layer_tasks
 from trunnion.plan.panel.freeform.slope_tasks import slope_rough_tasks, slope_tasks
 from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
+from trunnion.plan.panel.outline_tasks import OUTLINE_TASK_MAKERS
 from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, OperationTask, PanelPlanState
 from trunnion.shop import Stage
 
@@ -34,5 +35,10 @@ FREEFORM_TASK_MAKERS: Mapping[
 """The rule behind each word that a typical plan gives for the cutter of a stage on leaning walls, slopes and curved floors."""
 NEEDED = frozenset({"layers", "sides"})
 """Rules without which a typical plan knows no leaning walls."""
-TASK_MAKERS = {**PLANE_TASK_MAKERS, **FREEFORM_TASK_MAKERS, **HOLE_TASK_MAKERS}
+TASK_MAKERS = {
+    **PLANE_TASK_MAKERS,
+    **OUTLINE_TASK_MAKERS,
+    **FREEFORM_TASK_MAKERS,
+    **HOLE_TASK_MAKERS,
+}
 """The rule behind each word that a typical plan gives for its cutter."""

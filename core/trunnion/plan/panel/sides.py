@@ -14,8 +14,9 @@ from trunnion.model.feature import Feature, Recognition
 from trunnion.plan.holes.hole import is_plain_through, is_wider_behind
 from trunnion.plan.panel.freeform.slope_tasks import slopes_of
 from trunnion.plan.panel.hole_tasks import hole_reach
+from trunnion.plan.panel.outline_tasks import OUTLINE_TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings
-from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, PanelPlanState, catalogue
+from trunnion.plan.panel.tasks import PanelPlanState, catalogue
 from trunnion.plan.prismatic.regions import SectionSource
 from trunnion.plan.setups import from_below
 from trunnion.plan.tool_choice import candidates
@@ -135,7 +136,7 @@ def _fits_outline(state: PanelPlanState, feature: Feature, stages: Sequence[Stag
         ).tools
         for stage in stages
         if stage.cutter in PROFILE_RULES
-        for task in PLANE_TASK_MAKERS[stage.cutter](state, stage, [feature])
+        for task in OUTLINE_TASK_MAKERS[stage.cutter](state, stage, [feature])
     )
 
 

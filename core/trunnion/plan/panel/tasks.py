@@ -17,7 +17,6 @@ from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.space import SurfaceSpace
-from trunnion.plan.prismatic.drive import profile_bottom
 from trunnion.plan.prismatic.regions import (
     Band,
     SetupSpace,
@@ -60,11 +59,19 @@ FOOT_RING = 0.5
 WALL_DISTANCE = "plane.floor.wall_distance"
 """Key of a floor's choice that holds what its cutter keeps from finished walls, mm."""
 
-REST = ("rest", "rest_layers")
+REST = ("rest", "rest_layers", "outline_rest")
 """Rules for the cutters of rest roughing: without one what is left stays to finishing."""
 
-DEPENDENT = ("rest", "rest_layers", "corner", "foot")
+DEPENDENT = ("rest", "rest_layers", "corner", "foot", "outline_rest", "outline_corner")
 """Rules for cutters that depend on the cutter of another stage."""
+
+BEFORE = {
+    "rest": "rough",
+    "corner": "wall",
+    "outline_rest": "profile_rough",
+    "outline_corner": "profile_finish",
+}
+"""Kind of operation whose cutter has left corners to that of a rule."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,9 +139,17 @@ class PanelPlanState:
 
     def task_id(self, stage: Stage, feature: Feature) -> str:
         """Return the name of a stage's operation on a feature; what both sides cut has the setup's name in it."""
-        own = f"{stage.kind}-{feature.id}"
-        shared = feature.id in self.halved | self.both_ends | self.slopes
+        return self.operation_id(stage.kind, feature.id)
+
+    def operation_id(self, kind: str, feature: str) -> str:
+        """Return the name of an operation of a kind on a feature by its id."""
+        own = f"{kind}-{feature}"
+        shared = feature in self.halved | self.both_ends | self.slopes
         return f"{own}-{self.space.setup.name}" if shared else own
+
+    def tool_before(self, rule: str, feature: str) -> Tool | None:
+        """Return the cutter that was in a feature's corners before that of a rule; None where there was none."""
+        return self.tools.get(self.operation_id(BEFORE[rule], feature)) if rule in BEFORE else None
 
 
 def floor_distance(wall_allowance: float) -> float:
@@ -467,43 +482,6 @@ def _top_areas(
     return over[0].boundary, wanted
 
 
-def _profile_tasks(
-    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
-) -> list[OperationTask]:
-    found = []
-    space = state.space
-    for feature in features:
-        if feature.kind in stage.on and feature.id not in state.slopes:
-            outline = space.silhouette()
-            wanted = space.blank_area().minus(outline)
-            if not wanted:
-                continue
-            depth = space.top - profile_bottom(space, feature.id in state.halved)
-            requirement = ToolRequirement(
-                depth=depth,
-                envelope_area=space.around().minus(outline),
-                wanted=wanted,
-                corner_radius=0.0,
-                near=NEAR_ROUGH,
-            )
-            low, high = outline.box()
-            side = float(np.max([low - space.blank_low[:2], space.blank_high[:2] - high]))
-            found.append(
-                OperationTask(
-                    id=state.task_id(stage, feature),
-                    half=feature.id in state.halved,
-                    stage=stage,
-                    feature=feature.id,
-                    requirement=requirement,
-                    width=side,
-                    position=(float(space.blank_low[0]), float(space.blank_low[1])),
-                    faces=feature.with_role("wall", "corner"),
-                    height=depth,
-                )
-            )
-    return found
-
-
 PLANE_TASK_MAKERS: Mapping[
     str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]
 ] = {
@@ -515,10 +493,8 @@ PLANE_TASK_MAKERS: Mapping[
     "wall": _wall_tasks,
     "corner": _corner_tasks,
     "foot": _foot_tasks,
-    "profile_rough": _profile_tasks,
-    "profile_finish": _profile_tasks,
 }
-"""The rule behind each word that a typical plan gives for the cutter of a stage of plane work."""
+"""The rule behind each word that a typical plan gives for the cutter of a stage on pockets, tops and the face."""
 
 
 def _task(
@@ -625,22 +601,18 @@ def with_falling_sizes(
     """Return the tasks with cutters put in where a corner's cutter is much smaller than the one that was there before."""
     out: list[OperationTask] = []
     for task in tasks:
-        if task.stage.cutter in ("rest", "corner"):
-            before = state.tools.get(
-                f"{'rough' if task.stage.cutter == 'rest' else 'wall'}-{task.feature}"
-            )
-            n = 1
-            while (
-                before is not None
-                and before.diameter > state.settings.falling * state.tools[task.id].diameter
-            ):
-                step = _between(state, task, before)
-                if step is None:
-                    break
-                more = replace(task, id=f"{task.id}-{n}")
-                state.tools[more.id] = before = step
-                out.append(more)
-                n += 1
+        before, n = state.tool_before(task.stage.cutter, task.feature), 1
+        while (
+            before is not None
+            and before.diameter > state.settings.falling * state.tools[task.id].diameter
+        ):
+            step = _between(state, task, before)
+            if step is None:
+                break
+            more = replace(task, id=f"{task.id}-{n}")
+            state.tools[more.id] = before = step
+            out.append(more)
+            n += 1
         out.append(task)
     return out
 

@@ -146,6 +146,12 @@ HALF_OVERLAP = 1.0
 OF_POCKETS = ("rough", "corner", "corner_finish", "floor", "wall", "foot")
 """Kinds of operation that a pocket's drive serves."""
 
+OF_OUTLINES = ("profile_rough", "profile_finish")
+"""Kinds of operation that an outline's drive serves."""
+
+IN_CORNERS = ("corner", "corner_finish")
+"""Kinds of operation in corners, of pockets and of outlines."""
+
 
 def drive_of(operation: Operation, process: ProcessTree, space: SetupSpace) -> PlaneDrive:
     """Return the drive geometry of an operation in the frame of the space's setup, from tags and sections alone.
@@ -159,14 +165,16 @@ def drive_of(operation: Operation, process: ProcessTree, space: SetupSpace) -> P
         raise Refused(
             f"{operation.id}: its feature {operation.feature} is not there any more; delete the operation, or route again"
         )
+    if operation.kind in OF_OUTLINES or (
+        operation.kind in IN_CORNERS and feature.kind == "profile"
+    ):
+        return _profile(operation, process, feature, space)
     if operation.kind in OF_POCKETS:
         return _pocket(operation, process, feature, space)
     if operation.kind in ("rib_top", "boss_top"):
         return _free_top(operation, feature, space)
     if operation.kind == "island_top":
         return _island_top(operation, feature, space)
-    if operation.kind in ("profile_rough", "profile_finish"):
-        return _profile(operation, feature, space)
     raise Refused(
         f"{operation.id}: no drive geometry is known for operations of kind {operation.kind}"
     )
@@ -413,8 +421,10 @@ def _top(
     )
 
 
-def _profile(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
-    outline = space.silhouette()
+def _profile(
+    operation: Operation, process: ProcessTree, feature: Feature, space: SetupSpace
+) -> PlaneDrive:
+    outline, earlier = space.silhouette(), _earlier(operation, process)
     bottom = profile_bottom(space, operation.choices.get(HALVES) is True)
     level = DriveLevel(
         top=space.top,
@@ -441,6 +451,8 @@ def _profile(operation: Operation, feature: Feature, space: SetupSpace) -> Plane
         faces=operation.faces,
         wall_allowance=_choice(operation, WALL_ALLOWANCE),
         floor_allowance=0.0,
+        earlier_radius=earlier.cutter.radius if earlier else 0.0,
+        earlier_allowance=_choice(earlier, WALL_ALLOWANCE) if earlier else 0.0,
     )
 
 
@@ -455,9 +467,13 @@ def _level(band: Band) -> DriveLevel:
 
 def _earlier(operation: Operation, process: ProcessTree) -> Operation | None:
     """Return the operation that was in a feature's corners before this one."""
-    if operation.kind not in ("corner", "corner_finish"):
+    if operation.kind not in IN_CORNERS:
         return None
-    before = ("wall", "corner_finish") if operation.kind == "corner_finish" else ("rough", "corner")
+    before = (
+        ("wall", "profile_finish", "corner_finish")
+        if operation.kind == "corner_finish"
+        else ("rough", "profile_rough", "corner")
+    )
     found = None
     for other in process.of_setup(operation.setup):
         if other.id == operation.id:

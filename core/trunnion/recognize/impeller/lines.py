@@ -150,9 +150,8 @@ class MeridianCurve:
     @cached_property
     def _pieces(self) -> shapely.STRtree:
         """The straight pieces between neighbouring points, to be searched by place."""
-        return shapely.STRtree(
-            shapely.linestrings(np.stack([self.point[:-1], self.point[1:]], axis=1))
-        )
+        ends = np.stack([self.point[:-1], self.point[1:]], axis=1)
+        return shapely.STRtree(list(shapely.get_parts(shapely.multilinestrings(ends))))
 
     def directions(self, points: Floats) -> tuple[Floats, Floats]:
         """Return the directions (k, 2) of the flow, and square to it to the side where blades stand, beside points (k, 2)."""

@@ -255,8 +255,8 @@ class PlanningStock:
             return False
         if _holds_any(area, self._above(-math.inf, area)):
             return True
-        touched = area.offset(heightfield.HALF_DIAGONAL * self.cell)
-        return not _holds_any(touched, self._above(z, touched))
+        wider = area.offset(heightfield.HALF_DIAGONAL * self.cell)
+        return not _holds_any(wider, self._above(z, wider))
 
     def positions_above(self, z: float, area: Region) -> Floats:
         """Return the centres (k, 2) of the cells in an area that are higher than `z`."""
