@@ -31,6 +31,8 @@ CORNER_AREA, CORNER_WIDTH = 0.35, 0.2
 a sharp right angle 0.21 and 0.17. What is larger is a passage that the cutter is too wide for."""
 LEAST = 0.05
 """mm2 that a cutter leaves in corners: less needs no operation of its own."""
+THIN = 0.1
+"""mm: largest radius of a circle in what is left of a sharp edge that no slimmer cutter comes into either, and that stays."""
 
 
 def profile_tasks(
@@ -76,14 +78,14 @@ def _corner_tasks(
     for feature in _outlines(state, stage, features):
         before = state.tool_before(stage.cutter, feature.id)
         requirement = replace(_requirement(state, feature), near=NEAR_WALL)
-        if before is None or _remaining_after(requirement, before.radius).area < LEAST:
+        if before is None or _corners_after(state, requirement, before.radius).area < LEAST:
             continue
-        tools, clearance = catalogue(state, stage), state.settings.reach_clearance
-        fits = candidates(requirement, tools, clearance, state.progress)
+        tools, small = catalogue(state, stage), narrow_cutters(state)
+        fits = _into_corners(state, requirement, tools, before)
         if not fits.tools:
-            fits = candidates(requirement, narrow_cutters(state), clearance, state.progress)
+            fits = _into_corners(state, requirement, small, before)
         if not fits.tools:
-            fits = _slimmest(state, requirement, (*tools, *narrow_cutters(state)), before)
+            fits = _slimmest(state, requirement, (*tools, *small), before)
             _report_corners(state, stage, feature, before, fits)
         if fits.tools:
             task = _task(state, stage, feature, requirement)
@@ -114,6 +116,44 @@ def _remaining_after(requirement: ToolRequirement, radius: float) -> Region:
     """Return the area of what is wanted that a cutter of a radius doesn't cover; slivers of two offsets are none of it."""
     remaining = requirement.wanted.minus(requirement.envelope_area.opened(radius))
     return Region(tuple(p for p in remaining.pieces if p.area > tolerance.SEW))
+
+
+def _corners_after(state: PanelPlanState, requirement: ToolRequirement, radius: float) -> Region:
+    """Return what a cutter of a radius leaves in corners that is worth a slimmer one: all but what is thin in sharp edges."""
+    slimmest = min((t.radius for t in narrow_cutters(state)), default=radius)
+    remaining = _remaining_after(requirement, radius)
+    if not remaining:
+        return remaining
+    sharp = requirement.wanted.minus(requirement.envelope_area.opened(min(slimmest, radius)))
+    return Region(
+        tuple(
+            p
+            for piece in remaining.split()
+            if piece.offset(-THIN) or not piece.intersect(sharp)
+            for p in piece.pieces
+        )
+    )
+
+
+def _into_corners(
+    state: PanelPlanState, requirement: ToolRequirement, tools: Sequence[Tool], before: Tool
+) -> Candidates:
+    """Return the cutters slimmer than the one before that leave nothing worth an operation in corners."""
+    deep = requirement.depth + state.settings.reach_clearance
+    slimmer = {
+        t.radius
+        for t in tools
+        if t.radius < before.radius - tolerance.COINCIDENT and depth_reached(t) >= deep
+    }
+    for radius in sorted(slimmer, reverse=True):
+        if _corners_after(state, requirement, radius).area < LEAST:
+            return candidates(
+                replace(requirement, radius=radius),
+                tools,
+                state.settings.reach_clearance,
+                state.progress,
+            )
+    return Candidates(tools=())
 
 
 def _slimmest(
