@@ -78,3 +78,21 @@ def test_a_notch_too_narrow_for_the_largest_cutter_is_no_corner(tmp_path):
     session = engine.run(engine.open(notched(tmp_path, 3, 30.0, 2.6, narrowest=11.0)), "route")
     finish = next(o for o in outline_of(session) if o.kind == "profile_finish")
     assert 6.0 < finish.cutter.diameter <= 11.0
+
+
+@pytest.mark.parametrize(("angle", "is_cut"), ((172.0, False), (90.0, True)))
+def test_a_sharp_inner_edge_gets_a_slimmer_cutter_where_more_than_a_trace_stays(
+    angle, is_cut, tmp_path
+):
+    """An outline that turns in by 8 degrees keeps some hundredths of a millimetre of a large cutter; a right angle four of them."""
+    far = 60.0 * float(np.tan(np.radians(90.0 - 0.5 * angle)))
+    points = [(-60.0, -40.0), (60.0, -40.0), (60.0, far), (0.0, 0.0), (-60.0, far)]
+    plate = cq.Workplane("XY").polyline(points).close().extrude(12.0)
+    pocket = cq.Workplane("XY").box(60.0, 20.0, 12.0).edges("|Z").fillet(6.0)
+    plate = plate.cut(pocket.translate((0.0, -22.0, 12.0)))
+    cq.exporters.export(plate, str(tmp_path / "edge.step"))
+    engine = Engine()
+    session = engine.run(engine.open(tmp_path / "edge.step"), "route")
+    cut = [o.cutter.diameter for o in outline_of(session) if o.kind.startswith("corner")]
+    assert bool(cut) == is_cut
+    assert is_cut == any(f.code == "route.corner-left" for f in session.findings())

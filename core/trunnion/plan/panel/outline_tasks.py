@@ -35,7 +35,7 @@ THIN = 0.1
 """mm: largest radius of a circle in what is left of a sharp edge that no slimmer cutter comes into either, and that stays."""
 
 
-def profile_tasks(
+def _profile_tasks(
     state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
     """Return the tasks all round outlines. Where only slender or much smaller cutters get into all corners, others leave these to them."""
@@ -148,7 +148,7 @@ def _into_corners(
     for radius in sorted(slimmer, reverse=True):
         if _corners_after(state, requirement, radius).area < LEAST:
             return candidates(
-                replace(requirement, radius=radius),
+                replace(requirement, radius=radius, missable=1.0),
                 tools,
                 state.settings.reach_clearance,
                 state.progress,
@@ -232,8 +232,8 @@ def _is_slender(state: PanelPlanState, tool: Tool) -> bool:
 OUTLINE_TASK_MAKERS: Mapping[
     str, Callable[[PanelPlanState, Stage, Sequence[Feature]], list[OperationTask]]
 ] = {
-    "profile_rough": profile_tasks,
-    "profile_finish": profile_tasks,
+    "profile_rough": _profile_tasks,
+    "profile_finish": _profile_tasks,
     "outline_rest": _corner_tasks,
     "outline_corner": _corner_tasks,
 }
