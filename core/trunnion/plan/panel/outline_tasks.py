@@ -55,8 +55,7 @@ def _stiffer(
     clearance = state.settings.reach_clearance
     fine = candidates(requirement, tools, clearance, state.progress).tools
     widest = max((t.diameter for t in fine), default=0.0)
-    deep = requirement.depth + clearance
-    if not fine or all(t.diameter <= widest for t in tools if depth_reached(t) >= deep):
+    if not fine or all(2.0 * r <= widest for r in _radii(state, requirement, tools)):
         return None
     open_corners = without_corners(state, requirement, tools)
     if open_corners is None:
@@ -98,13 +97,20 @@ def without_corners(
 ) -> ToolRequirement | None:
     """Return a requirement without the corners that the largest cutter leaves of those that leave nothing else; None where every cutter
     that reaches leaves more."""
-    deep = requirement.depth + state.settings.reach_clearance
-    for radius in sorted({t.radius for t in tools if depth_reached(t) >= deep}, reverse=True):
+    for radius in _radii(state, requirement, tools):
         state.progress.check()
         remaining = _remaining_after(requirement, radius)
         if all(_is_corner(piece, radius) for piece in remaining.split()):
             return replace(requirement, wanted=requirement.wanted.minus(remaining))
     return None
+
+
+def _radii(
+    state: PanelPlanState, requirement: ToolRequirement, tools: Sequence[Tool]
+) -> list[float]:
+    """Return the radii of the cutters that reach as deep as is asked for, the largest first."""
+    deep = requirement.depth + state.settings.reach_clearance
+    return sorted({t.radius for t in tools if depth_reached(t) >= deep}, reverse=True)
 
 
 def _is_corner(piece: Region, radius: float) -> bool:
@@ -139,13 +145,9 @@ def _into_corners(
     state: PanelPlanState, requirement: ToolRequirement, tools: Sequence[Tool], before: Tool
 ) -> Candidates:
     """Return the cutters slimmer than the one before that leave nothing worth an operation in corners."""
-    deep = requirement.depth + state.settings.reach_clearance
-    slimmer = {
-        t.radius
-        for t in tools
-        if t.radius < before.radius - tolerance.COINCIDENT and depth_reached(t) >= deep
-    }
-    for radius in sorted(slimmer, reverse=True):
+    slimmer = [t for t in tools if t.radius < before.radius - tolerance.COINCIDENT]
+    for radius in _radii(state, requirement, slimmer):
+        state.progress.check()
         if _corners_after(state, requirement, radius).area < LEAST:
             return candidates(
                 replace(requirement, radius=radius, missable=1.0),

@@ -36,7 +36,7 @@ def report_hollows(state: SurfacePlanState, areas: Sequence[Area], progress: Pro
     """Warn of each area of which a good part is under more material than its cutters are meant for: no roughing direction opens it.
 
     That is where the point above a place of a face, farther off along its normal than layers leave material and than the area's largest
-    cutter is round, is in the blank and out of the way of roughing from any direction.
+    cutter is round, is in the blank and roughing comes to it from no direction.
     """
     if not state.roughing_sides:
         return
