@@ -247,6 +247,9 @@ def _add_finish(
     if strategy in SLOPE_LIMITS and STEEP in registry.names("strategies"):
         key, past = SLOPE_LIMITS[strategy]
         choices[key] = min(max(settings.steep + past, 1.0), 89.0)
+    if semi and strategy == STEEP:
+        # To and fro, and where stock stands alone: the mark of neither stays.
+        choices |= {f"{STEEP}.way": "both", f"{STEEP}.trim": True}
     if earlier is not None:
         choices |= {EARLIER: earlier.name, f"{strategy}.lead_radius": REST_LEAD}
     if upright is not None:

@@ -24,6 +24,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.reach import AreaSamples, leans, samples_on
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.threads import in_parallel
@@ -36,6 +37,7 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
     slopes_of,
 )
 from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
+from trunnion.toolpath.contact_passes.upright.stock_trimming import sample_count, trimmed_to_stock
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import thinned
 from trunnion.toolpath.contact_passes.upright.wall_foot import foot_passes
@@ -91,6 +93,11 @@ class WaterlineSettings:
         choices=("climb", "both"),
         label="Way",
         help="climb: the face on the right of the feed; both: to and fro.",
+    )
+    trim: bool = setting(
+        False,
+        label="Only where stock stands",
+        help="What earlier passes have left no higher than the scallop height is left out.",
     )
     overlap: float = setting(
         0.5,
@@ -183,11 +190,21 @@ def waterline(
         arcs=True,
         overlap=settings.overlap,
     )
+    if settings.trim:
+        steep = _samples(drive, math.radians(settings.shallowest))
+        passes = trimmed_to_stock(passes, steep, drive, tool, stock, data.feed, progress)
     passes, blocked = without_stock_contact(passes, drive, tool, stock, step, progress)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
         findings=(*found, *blocked),
     )
+
+
+def _samples(drive: SurfaceDrive, shallowest: float) -> AreaSamples:
+    """Return samples of the drive's faces where they lean by no less than an angle (rad) from level."""
+    area = float(drive.skin.areas(drive.skin.of(drive.faces)).sum())
+    samples = samples_on(drive.skin, tuple(drive.faces), sample_count(area))
+    return samples.of(leans(samples) >= shallowest)
 
 
 def _unreached_findings(drive: SurfaceDrive, steep: FacetSlopes) -> tuple[Finding, ...]:
