@@ -172,16 +172,18 @@ def test_faces_that_an_upright_tool_does_harm_at_are_finished_by_a_leaning_one(d
 
 def test_a_smaller_cutter_after_a_larger_one_cuts_only_its_rest(dome):
     engine, session = dome
-    finish = next(
+    planned = next(
         o for o in session.process.operations if o.kind == "finish" and o.cutter.form == "ball"
     )
-    tools = [t for t in engine.context.shop.tools if t.form == "ball"]
-    small = max(
-        (t for t in tools if t.diameter < 0.6 * finish.cutter.diameter), key=lambda t: t.diameter
+    small, large = (
+        next(t for t in engine.context.shop.tools if t.form == "ball" and t.diameter == d)
+        for d in (3.0, 6.0)
     )
+    finish = replace(planned, tool=large)
     again = replace(finish, id="finish-again", tool=small, after=(finish.id,))
     operations = list(session.process.operations)
-    operations.insert(operations.index(finish) + 1, again)
+    at = operations.index(planned)
+    operations[at : at + 1] = [finish, again]
     planted = replace(session, process=replace(session.process, operations=tuple(operations)))
     fix = Fix(kind="trim", operation="finish-again", reason="verify.air", amount=0.9)
     trimmed = engine.with_fix(planted, fix)

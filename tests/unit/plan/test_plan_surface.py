@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 
 from milling import mill
 from samples import read
@@ -23,6 +24,7 @@ from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.setup import Setup
 from trunnion.part.shape.skin import skin_of
 from trunnion.pipeline.operation_path import turned
+from trunnion.plan.freeform.cutters.choice import cutter_for
 from trunnion.plan.freeform.finishing.areas import (
     areas_of,
     blank_faces,
@@ -37,6 +39,7 @@ from trunnion.plan.freeform.roughing.heights import HeightMap, region_below
 from trunnion.plan.freeform.roughing.layers import level_faces
 from trunnion.plan.freeform.space import SurfaceSpace, skin_around
 from trunnion.plan.setups.frames import cutting_setup
+from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.views import StockViews
 
@@ -203,6 +206,24 @@ def test_places_stand_for_equal_shares_of_the_area():
     )
 
 
+@pytest.mark.parametrize("tag", [1, 2])
+@pytest.mark.parametrize("count", [60, 500, 20_000])
+def test_places_lie_everywhere_on_a_triangle(tag, count):
+    """A spread whose two steps add up to a whole number has all its places on one line."""
+    halves = joined(
+        grid(lambda x, y: 0.0 * x, n=1, high=(10.0, 10.0), tag=1),
+        grid(lambda x, y: 0.0 * x, n=3, low=(20.0, 0.0), high=(30.0, 7.0), tag=2),
+    )
+    places = samples_on(halves, (tag,), count)
+    corners = halves.points[halves.triangles[halves.of((tag,))]][:, :, :2].reshape(-1, 2)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    looked = low + np.random.default_rng(1).uniform(0.02, 0.98, (4000, 2)) * (high - low)
+    hole = cKDTree(places.point[:, :2]).query(looked)[0].max()
+    assert hole < 2.2 * np.sqrt(places.area)
+    share = (places.point[:, :2] < 0.5 * (low + high)).all(axis=1).mean()
+    assert share == pytest.approx(0.25, abs=0.05 if count > 60 else 0.1)
+
+
 def test_a_ball_reaches_a_trough_that_is_wider_than_it_and_no_other():
     trough = grid(
         lambda x, y: 20.0 - np.sqrt(np.maximum(25.0 / 4 - (y - 5.0) ** 2, 0.0)),
@@ -213,6 +234,38 @@ def test_a_ball_reaches_a_trough_that_is_wider_than_it_and_no_other():
     space, places = block(trough), samples_on(trough, (1,), 300)
     assert reached(space, places, BALL_4, 1.0).mean() > 0.9
     assert reached(space, places, BALL_6, 1.0).mean() < 0.1
+
+
+def hollow(radius, half=1.9):
+    """Return the skin of a square part of a hollow sphere."""
+    return grid(
+        lambda x, y: 20.0 - np.sqrt(radius**2 - x**2 - y**2),
+        n=40,
+        low=(-half, -half),
+        high=(half, half),
+    )
+
+
+@pytest.mark.parametrize(
+    ("radius", "chosen"), [(3.02, BALL_4), (3.2, BALL_4), (3.5, BALL_6), (9.0, BALL_6)]
+)
+def test_a_ball_nearly_as_round_as_a_hollow_is_left_for_a_smaller_one(radius, chosen):
+    space = block(hollow(radius))
+    places = samples_on(space.skin, (1,), 400)
+    assert reached(space, places, BALL_6, 1.0).mean() > 0.9
+    found = cutter_for(space, places, (BALL_4, BALL_6), 0.9, 1.0, None, NO_PROGRESS)
+    assert found.tool is chosen
+    assert cutter_for(space, places, (BALL_6,), 0.9, 1.0, None, NO_PROGRESS).tool is BALL_6
+    assert cutter_for(space, places, (BALL_4,), 0.9, 1.0, BALL_6, NO_PROGRESS).tool is BALL_6
+
+
+def test_a_ball_nearly_as_round_as_a_fillet_goes_along_it():
+    trough = grid(
+        lambda x, y: 20.0 - np.sqrt(3.02**2 - y**2), n=40, low=(-9.0, -2.2), high=(9.0, 2.2)
+    )
+    space, places = block(trough), samples_on(trough, (1,), 400)
+    found = cutter_for(space, places, (BALL_4, BALL_6), 0.9, 1.0, None, NO_PROGRESS)
+    assert found.tool is BALL_6
 
 
 def test_a_ball_as_round_as_a_bowl_has_no_way_to_go_in_it():

@@ -284,3 +284,16 @@ def test_walls_too_steep_are_left_and_named() -> None:
 def test_the_same_input_gives_the_same_path() -> None:
     first, second = (cut(constant, ConstantSettings, FORMS["zone"]).path for _ in range(2))
     assert (first.position == second.position).all()
+
+
+@pytest.mark.parametrize(("radius", "goes"), [(3.02, False), (6.0, True)])
+def test_a_hollow_as_round_as_the_ball_is_said_to_be_left(radius, goes):
+    def place(u, v):
+        return np.column_stack([u, v, -np.sqrt(radius**2 - u * u - v * v)])
+
+    side = np.linspace(-1.5, 1.5, 25)
+    made = cut(
+        constant, ConstantSettings, grid(place, lambda u, v: -place(u, v) / radius, side, side)
+    )
+    codes = [f.code for f in made.findings]
+    assert bool(len(made.path)) is goes and ("surface.no-way" in codes) is not goes

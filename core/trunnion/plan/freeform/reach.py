@@ -20,8 +20,10 @@ SAMPLES = 1500
 """Samples that an area is judged by; one of them stands for less than a thousandth of it."""
 BESIDE = 1.0
 """mm: how far to both sides of the height that decides whether a tool is free heights are told apart: much, to rounding."""
-FLAT = (0.5 * (math.sqrt(5.0) - 1.0), 0.5 * (math.sqrt(5.0) - 1.0) ** 2)
-"""Steps of an even spread over a square, by the golden ratio and its square."""
+PLASTIC = 1.3247179572447460
+"""The real root of x^3 = x + 1."""
+STEPS = (1.0 / PLASTIC, 1.0 / PLASTIC**2)
+"""Steps of an even spread over a square (Roberts 2018, R2). No whole numbers of both add up to one: else lines would hold all of it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -56,7 +58,7 @@ def samples_on(skin: Skin, tags: tuple[int, ...], count: int = SAMPLES) -> AreaS
     at = np.minimum(
         np.searchsorted(np.cumsum(area), (np.arange(count) + 0.5) / count * total), len(rows) - 1
     )
-    u, v = (np.mod((np.arange(count) + 0.5) * step, 1.0) for step in FLAT)
+    u, v = (np.mod((np.arange(count) + 0.5) * step, 1.0) for step in STEPS)
     over = u + v > 1.0
     u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
     weight = np.column_stack([1.0 - u - v, u, v])[:, :, None]

@@ -11,6 +11,7 @@ import numpy as np
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Bools
 from trunnion.model.tool import Tool
+from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.plan.freeform.reach import AreaSamples, reached
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.tool_choice import depth_reached
@@ -19,6 +20,8 @@ from trunnion.shop import Shop
 
 NEGLIGIBLE = 0.002
 """Share of an area that is left to no further cutter when its own one misses it."""
+GOES = 0.1
+"""Of an area's size: a cutter whose tip goes no farther while it touches all of it has no way to go there."""
 NEAR = 3
 """Names of cutters that are offered in place of one that is not there."""
 
@@ -84,7 +87,9 @@ def cutter_for(
     """Return the largest cutter, by a size of cutters, that reaches at least a share of what any one reaches of samples, the shortest of
     its size; or the one that is `wanted`.
 
-    What it misses goes to the largest smaller one, or else to one of less diameter, that reaches nearly all any does of that.
+    What it misses goes to the largest smaller one, or else to one of less diameter, that reaches nearly all any does of that. One that is
+    nearly as round as a hollow is taken where no other one reaches as much: it touches all of it from one place, and its passes would have
+    no length.
     """
     ranked = sorted(tools, key=lambda t: (-size(t), -t.diameter, depth_reached(t), t.name))
     reach: dict[str, Bools] = {}
@@ -103,9 +108,10 @@ def cutter_for(
     if not reachable.any():
         return AreaCutters(tool=None, reached=none, reachable=reachable, missed=none, rest=None)
     total = int(reachable.sum())
+    enough = [t for t in ranked if reach[t.name].sum() >= share * total]
     tool = wanted or next(
-        (t for t in ranked if reach[t.name].sum() >= share * total),
-        max(ranked, key=lambda t: int(reach[t.name].sum())),
+        (t for t in enough if _goes(t, samples.of(reach[t.name]))),
+        enough[0] if enough else max(ranked, key=lambda t: int(reach[t.name].sum())),
     )
     missed = reachable & ~reach[tool.name]
     if missed.sum() <= NEGLIGIBLE * total:
@@ -126,6 +132,14 @@ def cutter_for(
         rest=rest,
         by_name=reach,
     )
+
+
+def _goes(tool: Tool, samples: AreaSamples) -> bool:
+    """Return whether the tip of an upright cutter moves while it touches one sample after the other."""
+    axis = np.broadcast_to([0.0, 0.0, 1.0], samples.normal.shape)
+    tips = tip_at(tool, samples.point, samples.normal, axis)
+    moved, size = (float(np.linalg.norm(np.ptp(v, axis=0))) for v in (tips, samples.point))
+    return moved > GOES * size
 
 
 def steps_of(cutters: AreaCutters) -> tuple[CutterStep, ...]:

@@ -33,18 +33,20 @@ SMALLEST_LEFTOVER = 0.5
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class UprightPasses:
     """Passes of an upright tool, the number (p,) of the contact pass that each is of, and how much of the contacts' way in mm was too
-    steep or behind other faces."""
+    steep, behind other faces, or in a hollow as round as the tool, which touches it all from one place."""
 
     passes: tuple[Pass, ...]
     source: tuple[int, ...]
     steep: float
     hidden: float
+    unmoved: float
 
     def remaining_findings(
         self, drive: SurfaceDrive, tool: Tool, stepover: float
     ) -> tuple[Finding, ...]:
         """Return what was left, as areas: lengths times a stepover (mm)."""
         steep, hidden = self.steep * stepover, self.hidden * stepover
+        unmoved = self.unmoved * stepover
         found = []
         if steep > SMALLEST_LEFTOVER:
             found.append(
@@ -64,6 +66,16 @@ class UprightPasses:
                     "faces are in its way",
                     drive.feature,
                     remedy="finish them with a smaller cutter or a leaning one",
+                )
+            )
+        if unmoved > SMALLEST_LEFTOVER:
+            found.append(
+                warning(
+                    "surface.no-way",
+                    f"{drive.feature}: about {unmoved:.1f} mm2 are a hollow as round as {tool.name}, which touches them from one place "
+                    "and has no way to go there",
+                    drive.feature,
+                    remedy="finish them with a smaller cutter",
                 )
             )
         return tuple(found)
@@ -126,8 +138,17 @@ def upright_passes(
                 )
                 owner.append(k)
     hidden = _lifted(tips, drive, pieces, lowest, 5.0 * chord)
+    unmoved = sum(
+        _length(w.point)
+        for w, tip in zip(runs, tips, strict=True)
+        if _length(tip) < SHORTEST <= _length(w.point)
+    )
     return UprightPasses(
-        passes=tuple(passes), source=tuple(owner), steep=whole - kept, hidden=hidden
+        passes=tuple(passes),
+        source=tuple(owner),
+        steep=whole - kept,
+        hidden=hidden,
+        unmoved=unmoved,
     )
 
 
