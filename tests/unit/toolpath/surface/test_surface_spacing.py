@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -62,3 +65,47 @@ def test_ridges_in_a_hollow_stay_low_however_nearly_it_is_as_round_as_the_cutter
     half = min(0.5 * step / wider, 0.5 * np.pi)
     middle = wider * np.cos(half) + np.sqrt(radius**2 - (wider * np.sin(half)) ** 2)
     assert hollow - middle <= 1.1 * height
+
+
+def strip(normals, width=0.1, length=1.0, radius=3.0):
+    """Return triangles in a row along x, as long along y, whose corners have normals (n + 1, 3)."""
+    n = len(normals) - 1
+    x = width * np.arange(n + 1)
+    corners = np.stack(
+        [
+            np.column_stack([x[:-1], np.zeros(n), np.zeros(n)]),
+            np.column_stack([x[1:], np.zeros(n), np.zeros(n)]),
+            np.column_stack([x[:-1], np.full(n, length), np.zeros(n)]),
+        ],
+        axis=1,
+    )
+    facing = np.stack([normals[:-1], normals[1:], normals[:-1]], axis=1)
+    return FacetSlopes(
+        row=np.arange(n),
+        normal=facing[:, 0],
+        area=np.full(n, 0.5 * width * length),
+        tips=corners + radius * facing,
+        edges=corners[:, 1:] - corners[:, :1],
+        turns=facing[:, 1:] - facing[:, :1],
+    )
+
+
+@pytest.mark.parametrize(("size", "binds"), [(0.002, False), (0.1, True)])
+def test_one_triangle_that_is_off_does_not_bind_all_passes(size: float, binds: bool) -> None:
+    """A level strip, and in it a triangle whose normals turn as those of a hollow as round as the ball."""
+    level = np.tile([0.0, 0.0, 1.0], (401, 1))
+    turn = size / 3.0
+    hollow = np.array([[np.sin(0.5 * turn), 0.0, 1.0], [-np.sin(0.5 * turn), 0.0, 1.0]])
+    flat, off = strip(level), strip(hollow, width=size)
+    slopes = FacetSlopes(
+        **{
+            f.name: np.concatenate([getattr(flat, f.name), getattr(off, f.name)])
+            for f in fields(FacetSlopes)
+        }
+    )
+    cutter, across = mill(6.0, 3.0), np.array([1.0, 0.0, 0.0])
+    spacing = tip_spacing(slopes, cutter, 0.004, across)
+    plain = tip_spacing(flat, cutter, 0.004, across)
+    assert bool(spacing.min() < 0.5 * plain.min()) is binds
+    assert tip_spacing(off, cutter, 0.004, across).min() < 0.5 * plain.min()
+    assert (spacing[:-1] == plain).all()

@@ -26,6 +26,9 @@ AIM = 0.95
 CLOSEST = 2.76
 """Heights: how near tips need to come at most. In a hollow whose radius is larger by e a tip goes e for each radian that its contact does;
 between passes d apart e (1 - cos(d / 2 e)) stays, which is no more than 0.3623 d for any e."""
+SPECK = (0.05, 0.001)
+"""mm2, and share of the whole: so much of an area, whichever is less, binds no passes. One triangle whose corners' normals are off would
+lay them ten times as near all over it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -98,9 +101,18 @@ def tip_spacing(slopes: FacetSlopes, tool: Tool, height: float, across: Floats) 
     advance = (move @ across) / share
     # What is rounder than the cutter by more than the height is left to a smaller one, wherever passes lie.
     fits = advance * tool.corner_radius > -height
-    return np.asarray(
-        share * np.where(fits, np.maximum(stepover * advance, CLOSEST * height), stepover)
-    )
+    found = share * np.where(fits, np.maximum(stepover * advance, CLOSEST * height), stepover)
+    return _without_specks(found, slopes.area)
+
+
+def _without_specks(spacing: Floats, area: Floats) -> Floats:
+    """Return the spacing (m,) with that of the triangles that bind most, as many as make a speck, no less than the next one's."""
+    order = np.argsort(spacing, kind="stable")
+    most, share = SPECK
+    rest = np.cumsum(area[order]) > min(most, share * float(area.sum()))
+    if not rest.any():
+        return spacing
+    return np.maximum(spacing, spacing[order[np.argmax(rest)]])
 
 
 def level_spacing(slopes: FacetSlopes, tool: Tool, height: float) -> Floats:
