@@ -23,8 +23,10 @@ from trunnion.pipeline.operation_path import turned
 from trunnion.pipeline.path_jobs import PathJobs
 from trunnion.pipeline.planning.scene import SessionContext, SetupScene
 from trunnion.plan.contract import planner_for
+from trunnion.plan.freeform.keys import EARLIER
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
+from trunnion.toolpath.contact_passes.choices import HINDERED
 from trunnion.toolpath.motion.load import LoadStock, PathLoad
 from trunnion.toolpath.stock.views import StockViews
 
@@ -101,12 +103,17 @@ def findings_of(paths: Sequence[OperationPath], process: ProcessTree) -> tuple[F
 
 
 def _settled(finding: Finding, own: Operation, process: ProcessTree) -> bool:
-    """Return whether a finding is of what its strategy leaves to others, and another operation on the same faces is there for it."""
-    return finding.code in registry.get(STRATEGIES, own.strategy).leaves and any(
-        finding.code in registry.get(STRATEGIES, o.strategy).settles
-        and set(o.faces) & set(own.faces)
+    """Return whether a finding is of what its strategy leaves to others, and another operation on the same faces is there for it: by its
+    strategy, or as the one on what this operation's cutter leaves."""
+    beside = [
+        o
         for o in process.operations
-        if o.id != own.id and not o.suppressed
+        if o.id != own.id and not o.suppressed and set(o.faces) & set(own.faces)
+    ]
+    if finding.code == HINDERED:
+        return any(o.choices.get(EARLIER) == own.cutter.name for o in beside)
+    return finding.code in registry.get(STRATEGIES, own.strategy).leaves and any(
+        finding.code in registry.get(STRATEGIES, o.strategy).settles for o in beside
     )
 
 

@@ -9,12 +9,13 @@ import pytest
 from lxml import etree
 
 from samples import written
+from seeded.blades import blade
 from trunnion.findings import BadInput, Severity
 from trunnion.geometry.cut import plane_cut
 from trunnion.pipeline import Engine
 from trunnion.pipeline.planning.patches import with_cut
 from trunnion.plan.freeform.cutters.choice import named
-from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP
+from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, SCALLOP
 from trunnion.shop import load_shop
 from trunnion.store.process import process_xml
 
@@ -22,8 +23,12 @@ CURVED = {"recognize.family": "surface"}
 
 
 def routed(shape, **words):
+    return routed_file(written(shape), **words)
+
+
+def routed_file(file, **words):
     engine = Engine()
-    session = engine.open(written(shape))
+    session = engine.open(file)
     return engine.run(engine.with_choices(session, {**CURVED, **words}), "route")
 
 
@@ -93,6 +98,50 @@ def test_tools_are_numbered_in_the_order_of_use(session):
     ] == sorted(set(numbers))
 
 
+@pytest.fixture(scope="module")
+def sharp():
+    """The route of a gently domed plate with a wide boss whose foot is sharp: a large ball leaves some per cent of the plate beside it."""
+    return routed(_with_sharp_boss())
+
+
+def _with_sharp_boss():
+    plate = cq.Workplane("XY").box(140.0, 110.0, 20.0, centered=(True, True, False))
+    dome = cq.Workplane("XY").sphere(600.0).translate((0.0, 0.0, -585.0))
+    boss = cq.Workplane("XY").circle(16.0).extrude(24.0, taper=4.0)
+    return plate.intersect(dome).union(boss).val().wrapped
+
+
+def test_a_larger_cutter_goes_before_an_area_s_own_where_both_are_quicker(sharp):
+    operations = sharp.process.operations
+    chain = [o for o in operations if o.kind in ("finish", "rest_finish") and "remaining" in o.id]
+    ids = [o.id for o in chain if not o.id.endswith("-steep")]
+    assert ids[:2] == ["finish-remaining", "rest-finish-remaining"]
+    first, own = (next(o for o in chain if o.id == id) for id in ids[:2])
+    assert first.cutter.diameter > own.cutter.diameter
+    assert EARLIER not in first.choices and own.choices[EARLIER] == first.cutter.name
+    for o in chain:
+        earlier = o.choices.get(EARLIER)
+        before = operations[: operations.index(o)]
+        assert earlier is None or any(
+            b.cutter.name == earlier and set(b.faces) & set(o.faces) for b in before
+        )
+
+
+def test_what_the_larger_cutter_leaves_is_semi_finished_too(sharp):
+    semi = {o.id: o for o in sharp.process.operations if o.kind == "semi"}
+    first, rest = semi["semi-remaining"], semi["semi-remaining-rest"]
+    own = sharp.process.operation("rest-finish-remaining")
+    assert rest.cutter.name == own.cutter.name and rest.choices[EARLIER] == first.cutter.name
+    assert rest.choices[ALLOWANCE] == first.choices[ALLOWANCE] > 0.0
+    assert set(rest.faces) == set(own.faces)
+
+
+def test_no_larger_cutter_goes_before_one_that_a_person_names(sharp):
+    own = sharp.process.operation("rest-finish-remaining").cutter.name
+    named_one = routed(_with_sharp_boss(), **{"surface.cutter": own})
+    assert named_one.process.operation("finish-remaining").cutter.name == own
+
+
 def test_a_person_may_name_the_cutters():
     chosen = routed(hilly(), **{"surface.cutter": "AL2-ball D10 R5", "surface.ra": 3.2})
     finish = chosen.process.operation("finish-remaining")
@@ -158,6 +207,17 @@ def test_with_rotary_axes_it_is_roughed_from_two_sides_and_finished_leaning():
     ]
     assert sorted(len(o.faces) for o in leaning) == [1, 1, 1]
     assert not [f for f in process.findings if f.code == "route.not-planned"]
+
+
+def test_beside_what_hangs_over_no_thick_cutter_comes_first_and_the_leaning_one_last(tmp_path):
+    process = routed_file(
+        blade(0).written(tmp_path), **{"setup.machine": "Trunnion 650", "surface.scallop": 0.02}
+    ).process
+    rests = [o for o in process.operations if EARLIER in o.choices]
+    # Of the area beside the blade the smallest cutter that reaches enough is the first one.
+    assert rests and not [o for o in rests if o.kind == "semi"]
+    after = {o.id: o.after for o in process.operations}
+    assert "semi-remaining" in after["semi-remaining-leaning"]
 
 
 def test_an_operations_direction_is_in_the_xml_where_it_is_not_the_setups_z(session):

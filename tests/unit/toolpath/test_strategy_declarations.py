@@ -11,9 +11,11 @@ from trunnion.findings import warning
 from trunnion.model.operation import OperationPath
 from trunnion.pipeline import Engine
 from trunnion.pipeline.toolpaths import findings_of, make_paths
+from trunnion.plan.freeform.keys import EARLIER
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import settings
+from trunnion.toolpath.contact_passes.choices import HINDERED
 from trunnion.toolpath.contract import (
     Planned,
     ToolAxis,
@@ -105,6 +107,21 @@ def test_what_nobody_settles_is_told(routed, registered) -> None:
 def test_what_a_strategy_does_not_leave_to_others_is_told(routed, registered) -> None:
     registered(leaving=leaving, settling=settling)
     assert told(on_one_face(routed[1], "settling", "settling")) == ["shop.left"]
+
+
+@pytest.mark.parametrize(("of", "says"), [("own", False), ("other", True), ("", True)])
+def test_what_a_cutter_is_lifted_off_is_told_unless_an_operation_takes_its_rest(
+    routed, of, says
+) -> None:
+    process = on_one_face(routed[1], "surface.constant", "surface.constant")
+    own, other = process.operations
+    names = {"own": own.cutter.name, "other": "another one", "": ""}
+    rest = replace(other, choices={**other.choices, EARLIER: names[of]})
+    path = OperationPath(operation="own-0", findings=(warning(HINDERED, "a corner stays"),))
+    found = findings_of([path], replace(process, operations=(own, rest)))
+    assert bool(found) is says
+    idle = replace(process, operations=(own, replace(rest, suppressed=True)))
+    assert findings_of([path], idle)
 
 
 def test_the_tool_axis_follows_from_the_settings() -> None:

@@ -5,16 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from trunnion import registry
 from trunnion.findings import face_tags, warning
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutters.choice import NEGLIGIBLE, AreaCutters, cutter_for, named
+from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
+from trunnion.plan.freeform.cutters.choice import (
+    NEGLIGIBLE,
+    AreaCutters,
+    CutterStep,
+    cutter_for,
+    named,
+    steps_of,
+    with_larger_first,
+)
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.plan.freeform.finishing.areas import Area
-from trunnion.plan.freeform.finishing.chord import chord_choices
+from trunnion.plan.freeform.finishing.chord import chord_choices, laid_height
 from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, EXTENSION, SCALLOP, UPRIGHT_EARLIER
 from trunnion.plan.freeform.reach import AreaSamples, leans, reached, samples_on
 from trunnion.plan.freeform.tilted_reach import SAMPLES as LEANING_SAMPLES
@@ -25,8 +35,8 @@ from trunnion.plan.surface.plan_state import SurfacePlanState
 from trunnion.plan.surface.roughing_route import remaining_after_layers
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.progress import Progress
-from trunnion.settings import Value
-from trunnion.units import trimmed
+from trunnion.settings import Value, choose
+from trunnion.units import SECONDS_PER_MINUTE, trimmed
 
 LARGEST_LEANING = 16.0
 """mm: larger balls have no space to lean on parts that need it."""
@@ -35,6 +45,8 @@ FOR_SHALLOW = ("surface.parallel", "surface.constant")
 """Strategies for local features and for shallow faces, the best first."""
 STEEP = "surface.waterline"
 """The strategy for steep faces."""
+LEANING_STRATEGY = "surface.point"
+"""The strategy for a cutter that leans."""
 LEANING = "-leaning"
 """Ends the name of an operation on what the upright cutters of an area can't come to."""
 REST_LEAD = 0.3
@@ -74,31 +86,81 @@ def plan_area(
     _report_unreached(state, area, samples, found)
     if found.tool is None:
         return
-    tags = tuple(t for t in area.tags if found.reached[samples.face == t].any())
-    for kind in ("semi", "finish") if settings.semi_allowance > 0.0 else ("finish",):
-        for name, mine, strategy in _by_slope(area, tags, samples, math.radians(settings.steep)):
-            _add_finish(state, kind, name, mine, found.tool, strategy, samples)
-    if found.rest is not None:
-        missed = samples.of(found.missed)
-        remaining = Area(
-            id=area.id, tags=tuple(t for t in area.tags if (missed.face == t).any()), local=True
-        )
-        for name, mine, strategy in _by_slope(
-            remaining, remaining.tags, missed, math.radians(settings.steep)
-        ):
-            _add_finish(
-                state, "rest_finish", name, mine, found.rest, strategy, missed, earlier=found.tool
-            )
-        # Faces that the larger cutter never touches are still as roughing left them.
-        raw = replace(
-            remaining, id=f"{area.id}-rest", tags=tuple(t for t in remaining.tags if t not in tags)
-        )
-        if raw.tags and settings.semi_allowance > 0.0:
-            for name, mine, strategy in _by_slope(
-                raw, raw.tags, missed, math.radians(settings.steep)
-            ):
-                _add_finish(state, "semi", name, mine, found.rest, strategy, missed)
+    done: set[int] = set()
+    for n, step in enumerate(_steps(state, samples, found, wanted=bool(wanted))):
+        tags = tuple(t for t in area.tags if step.rows[samples.face == t].any())
+        if step.earlier is None:
+            mine = samples if step.tool is found.tool else samples.of(step.rows)
+            _add_first(state, area, tags, step.tool, mine)
+        else:
+            # Of corners only faces that no cutter before ever touches are still as roughing left them.
+            raw = tags if step.tool is found.tool else tuple(t for t in tags if t not in done)
+            _add_rest(state, area, tags, raw, step, samples.of(step.rows), n)
+        done |= set(tags)
     _leaning_rest(state, area, samples, found, progress)
+
+
+def _steps(
+    state: SurfacePlanState, samples: AreaSamples, found: AreaCutters, *, wanted: bool
+) -> tuple[CutterStep, ...]:
+    """Return the cutters of an area in the order they cut: a larger one before its own where both together are quicker, unless that one
+    is wanted by name, or faces hang over: under these stands what roughing left, and a thick cutter meets it with its neck or shank."""
+    if wanted or state.has_overhangs:
+        return steps_of(found)
+    change = state.machine.tool_change_s / SECONDS_PER_MINUTE
+    return with_larger_first(
+        found, finishers(state), samples.area, partial(_area_rate, state), change
+    )
+
+
+def _area_rate(state: SurfacePlanState, tool: Tool) -> float:
+    """Return what a ball semi-finishes and finishes in mm2/min: the distance of its passes on a plane times its feed."""
+    settings = state.settings
+    heights = {"finish": settings.height()}
+    if settings.semi_allowance > 0.0:
+        heights["semi"] = settings.semi_scallop
+    minutes = 0.0
+    for kind, height in heights.items():
+        width = stepover_on_plane(tool.corner_radius, height)
+        cutting = choose(CuttingSettings, {})
+        data = cutting_data(tool, state.material, state.machine, kind, cutting, height, width)
+        minutes += 1.0 / (width * data.feed)
+    return 1.0 / minutes
+
+
+def _add_first(
+    state: SurfacePlanState,
+    area: Area,
+    tags: tuple[int, ...],
+    tool: Tool,
+    samples: AreaSamples,
+) -> None:
+    """Plan semi-finishing and finishing of an area's faces with its first cutter."""
+    for kind in ("semi", "finish") if state.settings.semi_allowance > 0.0 else ("finish",):
+        for name, mine, strategy in _by_slope(
+            area, tags, samples, math.radians(state.settings.steep)
+        ):
+            _add_finish(state, kind, name, mine, tool, strategy, samples)
+
+
+def _add_rest(
+    state: SurfacePlanState,
+    area: Area,
+    tags: tuple[int, ...],
+    raw: tuple[int, ...],
+    step: CutterStep,
+    samples: AreaSamples,
+    number: int,
+) -> None:
+    """Plan what the cutters before leave of an area's faces with its next one, the `number`-th, and semi-finishing of the `raw` ones."""
+    end = f"-{number}" if number > 1 else ""
+    kinds = (("rest_finish", f"{area.id}{end}", tags), ("semi", f"{area.id}-rest{end}", raw))
+    for kind, id, faces in kinds[: 2 if state.settings.semi_allowance > 0.0 else 1]:
+        part = Area(id=id, tags=faces, local=True)
+        for name, mine, strategy in _by_slope(
+            part, faces, samples, math.radians(state.settings.steep)
+        ):
+            _add_finish(state, kind, name, mine, step.tool, strategy, samples, earlier=step.earlier)
 
 
 def _leaning_rest(
@@ -137,7 +199,7 @@ def _leaning_rest(
             f"{area.id}{LEANING}",
             tags,
             leaning.tool,
-            "surface.point",
+            LEANING_STRATEGY,
             samples.of(~seen),
             upright=last,
         )
@@ -159,8 +221,8 @@ def plan_hidden_area(state: SurfacePlanState, area: Area, progress: Progress) ->
     if found.tool is None:
         return
     if settings.semi_allowance > 0.0:
-        _add_finish(state, "semi", area.id, area.tags, found.tool, "surface.point", samples)
-    _add_finish(state, "finish", area.id, area.tags, found.tool, "surface.point", samples)
+        _add_finish(state, "semi", area.id, area.tags, found.tool, LEANING_STRATEGY, samples)
+    _add_finish(state, "finish", area.id, area.tags, found.tool, LEANING_STRATEGY, samples)
     if found.rest is not None:
         remaining = tuple(t for t in area.tags if (found.missed & (few.face == t)).any())
         _add_finish(
@@ -169,7 +231,7 @@ def plan_hidden_area(state: SurfacePlanState, area: Area, progress: Progress) ->
             area.id,
             remaining,
             found.rest,
-            "surface.point",
+            LEANING_STRATEGY,
             samples,
             earlier=found.tool,
         )
@@ -227,7 +289,7 @@ def _add_finish(
         return
     semi = kind == "semi"
     allowance = settings.semi_allowance if semi else 0.0
-    height = settings.semi_scallop if semi else settings.height()
+    height = settings.semi_scallop if semi else laid_height(strategy, settings.height())
     after_rough = semi or settings.semi_allowance <= 0.0
     depth = (
         remaining_after_layers(state.space, settings) if after_rough else settings.semi_allowance
@@ -250,14 +312,12 @@ def _add_finish(
     if semi and strategy == STEEP:
         # To and fro, and where stock stands alone: the mark of neither stays.
         choices |= {f"{STEEP}.way": "both", f"{STEEP}.trim": True}
+    if earlier is not None or upright is not None:
+        choices[f"{strategy}.lead_radius"] = REST_LEAD
     if earlier is not None:
-        choices |= {EARLIER: earlier.name, f"{strategy}.lead_radius": REST_LEAD}
+        choices[EARLIER] = earlier.name
     if upright is not None:
-        choices |= {
-            UPRIGHT_EARLIER: upright.name,
-            "surface.point.pattern": "constant",
-            "surface.point.lead_radius": REST_LEAD,
-        }
+        choices |= {UPRIGHT_EARLIER: upright.name, f"{strategy}.pattern": "constant"}
     state.add(
         kind,
         name,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from trunnion.model.operation import Operation
+from trunnion.plan.freeform.keys import EARLIER, UPRIGHT_EARLIER
 from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.surface.plan_state import SurfacePlanState
 from trunnion.shop import Stage
@@ -30,11 +31,13 @@ def in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation
             if other.group in stage.after_all
             or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
             or other.id == o.id + FIRST
+            or _is_rest_of(o, other)
             or (other.group == o.group and _is_over(state, other) and not _is_over(state, o))
             or (
                 o.kind in FALLING
                 and other.group == o.group
                 and other.cutter.diameter > o.cutter.diameter
+                and not _is_rest_of(other, o)
                 and _is_over(state, other) == _is_over(state, o)
             )
         }
@@ -49,6 +52,16 @@ def in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation
             )
         )
     return [done[id] for id in ordered(jobs)]
+
+
+def _is_rest_of(operation: Operation, other: Operation) -> bool:
+    """Return whether an operation cuts what another one of its stage leaves: a smaller cutter after the larger one, a leaning one after
+    the upright ones."""
+    if operation.group != other.group or set(operation.faces).isdisjoint(other.faces):
+        return False
+    if UPRIGHT_EARLIER in operation.choices:
+        return UPRIGHT_EARLIER not in other.choices
+    return operation.choices.get(EARLIER) == other.cutter.name
 
 
 def _is_over(state: SurfacePlanState, operation: Operation) -> bool:

@@ -33,7 +33,7 @@ class RoughingSide:
 @dataclass(slots=True)
 class SurfacePlanState:
     """What is known while one setup is planned; `unsampled` are the faces so small that no position of their area lies on them, `hanging`
-    the hidden ones that are no hollows."""
+    the hidden ones that are no hollows; `has_overhangs`: some face hangs over."""
 
     space: SurfaceSpace
     around: ClearanceScene
@@ -49,6 +49,7 @@ class SurfacePlanState:
     findings: list[Finding] = field(default_factory=list)
     unsampled: set[int] = field(default_factory=set)
     hanging: set[int] = field(default_factory=set)
+    has_overhangs: bool = False
     roughing_sides: list[RoughingSide] = field(default_factory=list)
 
     def cutters(self, use: str) -> tuple[Tool, ...]:

@@ -6,10 +6,12 @@ one (quick segmentation: variable parameters). What a cutter doesn't reach of it
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
+from trunnion import tolerance
 from trunnion.findings import face_tags, warning
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
@@ -125,6 +127,7 @@ def _plan(state: SurfacePlanState, progress: Progress) -> None:
             walls.update(tags)
     level = plan_lands(state, set(mine) - walls, finishers(state), progress.part(0.0, 0.05))
     open_faces = set(mine) - walls - level.tags
+    state.has_overhangs = bool((samples.normal[:, 2] < -math.sin(tolerance.ANGLE)).any())
     hidden = (
         with_joined_hollows(
             state.recognition,

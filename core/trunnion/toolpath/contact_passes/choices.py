@@ -8,6 +8,8 @@ from trunnion.settings import setting
 
 TOO_STEEP, TOO_SHALLOW = "surface.too-steep", "surface.too-shallow"
 """Codes of findings on slopes that one strategy leaves to another."""
+HINDERED = "surface.in-the-way"
+"""Code of the finding on what an upright tool is lifted off by other faces: a smaller one is there for it, or should be."""
 IN_STOCK = "surface.in-stock"
 """Code of the finding on what lies beside stock that is in the way of an upright tool."""
 

@@ -19,7 +19,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import lower_side, tip_at
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import NO_PROGRESS, Progress
-from trunnion.toolpath.contact_passes.choices import TOO_STEEP
+from trunnion.toolpath.contact_passes.choices import HINDERED, TOO_STEEP
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.upright.tracing import follow
@@ -61,7 +61,7 @@ class UprightPasses:
         if hidden > SMALLEST_LEFTOVER:
             found.append(
                 warning(
-                    "surface.in-the-way",
+                    HINDERED,
                     f"{drive.feature}: about {hidden:.1f} mm2 are out of reach of {tool.name}: other "
                     "faces are in its way",
                     drive.feature,
