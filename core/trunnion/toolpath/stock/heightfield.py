@@ -129,6 +129,13 @@ class PlanningStock:
             self.reads.add_everything()
         return self.field
 
+    @property
+    def exact_cuts(self) -> tuple[tuple[Toolpath, Tool], ...]:
+        """The `cuts`, for who looks closer than at cells: others may leave the same heights there."""
+        if self.reads is not None:
+            self.reads.add_everything()
+        return self.cuts
+
     def digest_in(self, box: StockBox) -> str:
         """Return a short digest of the heights within a box, and of where the cells are."""
         if box == EVERYWHERE:
@@ -165,16 +172,14 @@ class PlanningStock:
     ) -> PlanningStock:
         """Return a centred working copy of the part of the stock that a box from `low` to `high` (2,) touches, in cells of about a side
         (mm): all that was cut is cut again. What was cut from elsewhere is known as well as the stock knows it."""
-        if self.reads is not None:
-            # Cuts that leave the same heights may leave other ones in finer cells.
-            self.reads.add_everything()
+        cuts = self.exact_cuts
         near = self.cropped(low, high)
         side = max(cell, float(np.sqrt(near.field.size * near.cell**2 / MOST_CELLS)))
         parts = max(1, math.floor(near.cell / side + tolerance.PARAMETRIC))
         field = np.repeat(np.repeat(near.field, parts, axis=0), parts, axis=1)
         made = replace(near, field=field, cell=near.cell / parts, centred=True, cuts=())
         corners = np.array(made.box())
-        for path, tool in progress.each(self.cuts):
+        for path, tool in progress.each(cuts):
             around = tool.radius + made.cell
             meets = (path.position[:, :2].max(axis=0) > corners[0] - around) & (
                 path.position[:, :2].min(axis=0) < corners[1] + around
@@ -206,9 +211,7 @@ class PlanningStock:
         self, path: Toolpath, tool: Tool, progress: Progress = NO_PROGRESS
     ) -> tuple[Floats, Floats]:
         """Do as `lower`, and return also the height that each block takes off, squared and summed over the area in plan: (n,) mm4."""
-        starts, ends, rows, error = chords(path)
-        if tool.full_width_height > 0.0:
-            starts, ends = _as_flat(starts, ends, tool.full_width_height)
+        starts, ends, rows, error = cutting_chords(path, tool)
         radius, gone = self.widths * (tool.radius - error), np.empty((len(starts), 2))
         if len(starts):
             ends_in_plan = np.vstack([starts, ends])[:, :2]
@@ -313,6 +316,15 @@ def chords(path: Toolpath) -> tuple[Floats, Floats, Ints, float]:
     share = np.stack([step_index, step_index + 1], axis=1) / count[rows][:, None]
     ends = [_positions(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
     return ends[0], ends[1], rows, ARC_CHORD if arcs.any() else 0.0
+
+
+def cutting_chords(path: Toolpath, tool: Tool) -> tuple[Floats, Floats, Ints, float]:
+    """Return the `chords` of a path as a flat, bull or ball end cutter of the tool's radius that cuts no more goes along them: a pointed
+    tool counts from where it has its whole width."""
+    starts, ends, rows, error = chords(path)
+    if tool.full_width_height > 0.0:
+        starts, ends = _as_flat(starts, ends, tool.full_width_height)
+    return starts, ends, rows, error
 
 
 def positions_on(path: Toolpath, rows: Ints, share: Floats) -> Floats:

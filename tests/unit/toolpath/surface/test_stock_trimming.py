@@ -15,6 +15,7 @@ from trunnion.plan.freeform.reach import samples_on
 from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.upright.stock_trimming import trimmed_to_stock
+from trunnion.toolpath.stock.stock_reads import EVERYWHERE
 from trunnion.toolpath.surface.waterline import WaterlineSettings, waterline
 from verify_tools import bull
 
@@ -99,6 +100,27 @@ def test_what_paths_before_have_cut_is_gone_to_the_hair_whatever_the_cells_of_th
     cut = stock.after(path_of(*moves), bull(6.0, 0.0)(flute=20.0))
     assert not trimmed([along(15.0, 0.1)], drive, cut, samples)
     assert trimmed([along(15.0, 0.1)], drive, stock, samples)
+
+
+def test_a_pointed_tool_has_cut_no_more_than_from_where_it_has_its_whole_width():
+    drive, _, samples = floor()
+    _, _, stock = driven(drive.skin, top=0.3)
+    moves = [
+        m
+        for y in np.arange(0.0, 31.0, 3.0)
+        for m in ((RAPID, -5.0, y, 5.0), (LINE, -5.0, y, 0.12, FEED), (LINE, 35.0, y, 0.12, FEED))
+    ]
+    pointed = replace(bull(6.0, 0.0)(flute=20.0), form="drill", point_angle=118.0)
+    assert pointed.full_width_height > 0.5
+    cut = stock.after(path_of(*moves), pointed)
+    assert trimmed([along(15.0, 0.1)], drive, cut, samples)
+
+
+def test_what_was_cut_anywhere_is_taken_down_as_looked_at():
+    drive, stock, samples = floor()
+    watched = stock.recorded()
+    trimmed([along(15.0, 0.1)], drive, watched, samples)
+    assert watched.box_read() == EVERYWHERE
 
 
 @pytest.mark.parametrize(("wide", "pieces"), [(0.5 * GAP, 1), (2.0 * GAP, 2)])

@@ -20,7 +20,7 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.passes import Pass
-from trunnion.toolpath.stock.heightfield import MOVES, PlanningStock, chords
+from trunnion.toolpath.stock.heightfield import MOVES, PlanningStock, cutting_chords
 from trunnion.units import SECONDS_PER_MINUTE
 
 APART = 0.25
@@ -61,9 +61,8 @@ def trimmed_to_stock(
         return list(passes)
     uncut = _StockSamples.of(samples, drive.allowance + drive.height)
     uncut.lower_to(stock)
-    for path, cutter in progress.each(stock.cuts):
-        # A cutter that is wider higher up takes no less than its lower side.
-        starts, ends, _, error = chords(path)
+    for path, cutter in progress.each(stock.exact_cuts):
+        starts, ends, _, error = cutting_chords(path, cutter)
         uncut.cut(starts, ends, cutter.radius - error, cutter.corner_radius, progress)
     kept = list[Pass]()
     gap = LINK * feed / SECONDS_PER_MINUTE
