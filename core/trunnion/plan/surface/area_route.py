@@ -1,4 +1,5 @@
-"""Finishing of areas of curved faces: each by the largest cutter that reaches it, what that leaves by a smaller or a leaning one."""
+"""Finishing of areas of curved faces: each by the largest cutter that reaches nearly all of it, with a larger one before it where that is
+quicker; what these leave by a smaller or a leaning one."""
 
 from __future__ import annotations
 
@@ -64,7 +65,8 @@ SLOPE_LIMITS = {
 def plan_area(
     state: SurfacePlanState, area: Area, level: FinishedLands, progress: Progress
 ) -> None:
-    """Plan semi-finishing and finishing of an area with its own cutter, and of what that cutter leaves with a smaller one.
+    """Plan semi-finishing and finishing of an area with its own cutter, a larger one before it where both together are quicker, and of
+    what that cutter leaves with a smaller one.
 
     The feet of sides that end mills finish with lands are no matter of its cutter.
     """
@@ -310,7 +312,7 @@ def _add_finish(
         key, past = SLOPE_LIMITS[strategy]
         choices[key] = min(max(settings.steep + past, 1.0), 89.0)
     if semi and strategy == STEEP:
-        # To and fro, and where stock stands alone: the mark of neither stays.
+        # Finishing takes off the marks of passes against the climb, and what no piece of a pass was worth.
         choices |= {f"{STEEP}.way": "both", f"{STEEP}.trim": True}
     if earlier is not None or upright is not None:
         choices[f"{strategy}.lead_radius"] = REST_LEAD

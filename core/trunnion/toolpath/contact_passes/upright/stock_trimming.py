@@ -20,20 +20,18 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.reach import AreaSamples
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.offsetting.trimming import LINK
 from trunnion.toolpath.stock.heightfield import MOVES, PlanningStock, cutting_chords
 from trunnion.units import SECONDS_PER_MINUTE
 
-APART = 0.25
-"""mm: how far places on the area are apart, and no more of them than this many."""
-MOST = 200_000
+APART, MOST = 0.25, 200_000
+"""mm that samples of the area are apart, and how many of them there are at most: beyond, they lie farther apart."""
 CELL = 1.0
-"""mm: side of the cells that places are looked up by."""
+"""mm: side of the cells that samples are looked up by."""
 GONE = 0
 """By which move a point is cleared that an earlier path has cleared, or where there never was stock."""
 MARGIN = 0.2
 """Of the cutter's radius: what a pass begins before it takes something, and goes on after it."""
-LINK = 0.4
-"""s that a link or lift and descent take: gaps that are fed through in less stay."""
 LEAST = 0.25
 """mm2 of the area: a piece of a pass that takes less is left out."""
 
@@ -55,7 +53,7 @@ def trimmed_to_stock(
     """Return the pieces of passes, in their order, which take something off samples of the area where more stands than the drive's
     scallop height over what the passes are to leave; `feed` in mm/min.
 
-    Whatever a whole pass would take there the pieces take.
+    Whatever a whole pass would take there the pieces take, but for specks no larger than `LEAST`.
     """
     if not passes or not len(samples):
         return list(passes)
