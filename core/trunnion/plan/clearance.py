@@ -38,7 +38,7 @@ class ClearanceScene(Protocol):
 
 
 class RemainingStockQuery(Protocol):
-    """Material that stands, as positions (`toolpath.stock.remaining.RemainingStock`)."""
+    """Material that stands off the part, as positions (`toolpath.stock.remaining.RemainingStock`)."""
 
     @property
     def cut(self) -> str:
@@ -47,9 +47,6 @@ class RemainingStockQuery(Protocol):
     @property
     def is_empty(self) -> bool:
         """Whether nothing stands."""
-
-    def beyond(self, thickness: float, points: Floats, normals: Floats) -> RemainingStockQuery:
-        """Return what of it is farther than a thickness (mm) outside of a part with positions (s, 3) and normals (s, 3) all over."""
 
     def is_free(
         self,

@@ -127,9 +127,11 @@ class Scene(Protocol):
     def stock(self, setup: Setup) -> StockHeights:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
 
-    def remaining_stock(self, frame: Frame, *, leaning: bool = False) -> RemainingStockQuery:
-        """Return what stands at this moment by all directions together, in a frame; with `leaning` without what leaning tools have cut that
-        left an allowance."""
+    def remaining_stock(
+        self, frame: Frame, progress: Progress, *, leaning: bool = False
+    ) -> RemainingStockQuery:
+        """Return what stands at this moment off the part by all directions together, in a frame; with `leaning` without what leaning tools
+        have cut that left an allowance."""
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""

@@ -200,7 +200,7 @@ def cuts_known(routed, monkeypatch):
         driven = drive(self, operation, needs, scene, progress)
         if operation.strategy != "finish":
             return replace(driven, allowance=0.3)
-        stock = scene.remaining_stock(driven.setup.frame, leaning=True)
+        stock = scene.remaining_stock(driven.setup.frame, progress, leaning=True)
         told_cuts[operation.id] = stock.cut
         return replace(driven, identity=(driven.identity, stock.cut))
 

@@ -1,12 +1,10 @@
-"""Whether bodies of revolution hold points: for planning clear of material that stands, and for what they take of it.
+"""Whether bodies of revolution hold points: for planning clear of material that stands.
 
 A body is given by cones in rows [z0, r0, z1, r1] along its axis, z from the tip up; a point is in it where it lies within a cone's
 height and nearer to the axis than the cone is wide there. mm; each pose is a tip and a unit axis.
 """
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 from numba import njit
@@ -65,7 +63,7 @@ def _misses(
 
 
 @njit(**BORROWED, inline="always")
-def _is_in(x: float, y: float, z: float, axis: Floats, rows: Floats) -> bool:
+def is_in_body(x: float, y: float, z: float, axis: Floats, rows: Floats) -> bool:
     """Return whether a position from the tip lies in a body."""
     along = x * axis[0] + y * axis[1] + z * axis[2]
     square = x * x + y * y + z * z - along * along
@@ -86,40 +84,9 @@ def _holds(points: Floats, first: int, last: int, tip: Floats, axis: Floats, row
     """Return whether a body holds any of the points from `first` to `last`."""
     for m in range(first, last):
         x, y, z = points[m, 0] - tip[0], points[m, 1] - tip[1], points[m, 2] - tip[2]
-        if _is_in(x, y, z, axis, rows):
+        if is_in_body(x, y, z, axis, rows):
             return True
     return False
-
-
-@njit(cache=True, nogil=True)
-def lattice_held(
-    present: Bools, low: Floats, step: Floats, tips: Floats, axes: Floats, rows: Floats
-) -> None:
-    """Clear of `present` (nx, ny, nz) the positions that a body at tips (k, 3) with axes (k, 3) holds, of a lattice that begins at `low`
-    (3,) and has its positions `step` (3,) apart."""
-    count = present.shape
-    first, last = np.zeros(3, np.int64), np.zeros(3, np.int64)
-    bottom, top, widest = rows[0, 0], rows[0, 2], 0.0
-    for r in range(len(rows)):
-        bottom, top = min(bottom, rows[r, 0]), max(top, rows[r, 2])
-        widest = max(widest, rows[r, 1], rows[r, 3])
-    for k in range(len(tips)):
-        tip, axis = tips[k], axes[k]
-        for d in range(3):
-            # The box of a cylinder: its ends' centres, and its radius across the axis.
-            across = widest * math.sqrt(max(1.0 - axis[d] * axis[d], 0.0))
-            one, other = tip[d] + bottom * axis[d], tip[d] + top * axis[d]
-            first[d] = max(int(math.ceil((min(one, other) - across - low[d]) / step[d])), 0)
-            last[d] = min(
-                int(math.floor((max(one, other) + across - low[d]) / step[d])) + 1, count[d]
-            )
-        for i in range(first[0], last[0]):
-            x = low[0] + i * step[0] - tip[0]
-            for j in range(first[1], last[1]):
-                y = low[1] + j * step[1] - tip[1]
-                for m in range(first[2], last[2]):
-                    if present[i, j, m] and _is_in(x, y, low[2] + m * step[2] - tip[2], axis, rows):
-                        present[i, j, m] = False
 
 
 def bodies_hold_reference(
@@ -140,16 +107,3 @@ def bodies_hold_reference(
             )
             for z0, r0, z1, r1 in rows.tolist()
         )
-
-
-def lattice_held_reference(
-    present: Bools, low: Floats, step: Floats, tips: Floats, axes: Floats, rows: Floats
-) -> None:
-    """Plain numpy form of `lattice_held`: every position for every pose."""
-    at = np.argwhere(np.ones(present.shape, dtype=bool))
-    held = np.zeros(1, dtype=bool)
-    for row in at.tolist():
-        point = (low + np.array(row) * step)[None]
-        for k in range(len(tips)):
-            bodies_hold_reference(point, tips[k : k + 1], axes[k : k + 1], rows, held)
-            present[tuple(row)] &= not held[0]

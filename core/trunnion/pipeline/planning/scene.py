@@ -6,6 +6,7 @@ from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from trunnion import tolerance
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
@@ -115,12 +116,18 @@ class SetupScene:
         """Return the stock that is left at this moment, in the frame of a setup (a cutting frame is one)."""
         return self.sides.seen(setup)
 
-    def remaining_stock(self, frame: Frame, *, leaning: bool = False) -> RemainingStock:
-        """Return what stands at this moment by all directions together, in a frame; with `leaning` without what leaning tools have cut that
-        left an allowance."""
+    def remaining_stock(
+        self, frame: Frame, progress: Progress, *, leaning: bool = False
+    ) -> RemainingStock:
+        """Return what stands at this moment off the part by all directions together, in a frame; with `leaning` without what leaning tools
+        have cut that left an allowance."""
         if leaning and self.before_leaning is not None:
             self.before_leaning()
-        return self.sides.remaining_stock(frame, leaning=leaning)
+
+        def skin() -> Skin:
+            return self.context.skin(tolerance.SKIN_CHORD, progress)
+
+        return self.sides.remaining_stock(frame, skin, leaning=leaning, progress=progress)
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""

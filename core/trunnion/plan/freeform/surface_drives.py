@@ -47,7 +47,7 @@ def surface_driven(
     remaining_stock, cut = None, ""
     if needs.leans:
         # What leaves an allowance waits for nothing: paths of leaning tools are made beside each other.
-        remaining_stock = scene.remaining_stock(space.frame, leaning=allowance <= 0.0)
+        remaining_stock = scene.remaining_stock(space.frame, progress, leaning=allowance <= 0.0)
         cut = remaining_stock.cut
 
     def made() -> tuple[Drive, tuple[Finding, ...]]:

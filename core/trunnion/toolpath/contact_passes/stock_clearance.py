@@ -15,20 +15,17 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.sheet.skin import Skin
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.reach import AreaSamples, samples_on
 from trunnion.toolpath.contact_passes.axis_search import thickened
 from trunnion.toolpath.contact_passes.contacts import slerp
+from trunnion.toolpath.stock.remaining import NEAR
 
-STOCK_SHARE, LEAST_STOCK = 2.0, 1.0
+STOCK_SHARE, LEAST_STOCK = 2.0, NEAR
 """How much material near the part tools are kept clear of where there is space: times the depth of cut, and mm at least. Earlier cutters
 leave more in corners than on faces."""
-EACH, MOST = 0.5, 60_000
-"""mm2 of the part for each of the samples that say how far stock is off it, and the most of them."""
 PIECE = math.radians(10.0)
 """Largest turn of the axis in one piece of a rapid's way."""
 LIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
@@ -37,22 +34,16 @@ LIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 
 @dataclass(frozen=True, eq=False)
 class StockClearance:
-    """Queries of one tool among stock: up to a `thickness` (mm) it may stand anywhere on the part, `beyond` is what is known to stand
-    farther off."""
+    """Queries of one tool among stock: up to a `thickness` (mm) it may stand anywhere on the part."""
 
     drive: SurfaceDrive
     tool: Tool
     thickness: float
-    beyond: RemainingStockQuery | None
 
-    @staticmethod
-    def of(drive: SurfaceDrive, tool: Tool, thickness: float) -> StockClearance:
-        """Return the queries of a tool on a drive whose tools may lean."""
-        beyond = None
-        if drive.remaining_stock is not None:
-            samples = _samples(drive.skin)
-            beyond = drive.remaining_stock.beyond(LEAST_STOCK, samples.point, samples.normal)
-        return StockClearance(drive, tool, thickness, beyond)
+    @property
+    def beyond(self) -> RemainingStockQuery | None:
+        """What is known to stand farther off the part; None where nobody knows."""
+        return self.drive.remaining_stock
 
     @property
     def has_stock(self) -> bool:
@@ -199,9 +190,3 @@ def _whole_body(tool: Tool, wider: float) -> Sequence[tuple[float, float, float,
         rows.append((z0, max(r0, widest), z1, max(r1, widest)))
         widest = max(widest, r0, r1)
     return [(z0, r0 + wider, z1, r1 + wider) for z0, r0, z1, r1 in rows]
-
-
-def _samples(skin: Skin) -> AreaSamples:
-    area = float(skin.areas().sum())
-    tags = tuple(int(t) for t in np.unique(skin.face))
-    return samples_on(skin, tags, int(min(max(area / EACH, 1.0), MOST)))

@@ -1,7 +1,4 @@
-"""What leaning tools have cut: the poses of their flutes, taken off the positions of a lattice that stand.
-
-No field of heights can hold such a cut. A position counts as gone where the flutes hold it, whatever of its cell they left.
-"""
+"""What leaning tools have cut: the poses of their flutes. No field of heights can hold such a cut; `voxels.py` does."""
 
 from __future__ import annotations
 
@@ -10,9 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
-from trunnion.geometry.kernels.bodies import lattice_held
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import Tool
@@ -25,19 +21,6 @@ RINGS = 6
 """Heights up the round end of a cutter between which it counts as a cone."""
 ROUND = ("ball", "bull", "flat")
 """Forms whose flutes are known as a round end with a cylinder over it; what others cut is not taken off."""
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class StockLattice:
-    """Positions at even distances in a frame: from `low` (3,) mm, `step` (3,) mm apart, `count` of them along each axis."""
-
-    low: Floats
-    step: Floats
-    count: tuple[int, int, int]
-
-    def points(self) -> Floats:
-        """Return all positions (k, 3), those along the last axis next to each other."""
-        return self.low + np.argwhere(np.ones(self.count, dtype=bool)) * self.step
 
 
 @dataclass(frozen=True)
@@ -71,25 +54,17 @@ class LeaningCut:
         tip = positions_on(path, rows, share)
         return self.frame.to_world(tip), self.frame.world_direction(axis)
 
-    def take_off(self, present: Bools, lattice: StockLattice, frame: Frame) -> None:
-        """Clear what the flutes hold of the positions of a lattice in a frame that stand (nx, ny, nz)."""
-        tips, axes = self.poses
-        if self.tool.form in ROUND and len(tips):
-            lattice_held(
-                present,
-                lattice.low,
-                lattice.step,
-                np.ascontiguousarray(frame.to_local(tips)),
-                np.ascontiguousarray(frame.local_direction(axes)),
-                _flutes(self.tool),
-            )
-
-
-def _flutes(tool: Tool) -> Floats:
-    """Return the cutting part of a tool as cones (r, 4) from the tip up, inside of it."""
-    lean = np.linspace(0.0, 0.5 * np.pi, RINGS + 1)
-    height = tool.corner_radius * (1.0 - np.cos(lean))
-    wide = tool.radius - tool.corner_radius * (1.0 - np.sin(lean))
-    height, wide = np.append(height, tool.flute_length), np.append(wide, tool.radius)
-    rows = np.column_stack([height[:-1], wide[:-1], height[1:], wide[1:]])
-    return np.ascontiguousarray(rows[rows[:, 2] > rows[:, 0]])
+    def flutes(self, inside: float) -> Floats:
+        """Return the cutting part of the tool as cones (r, 4) from the tip up, with at least `inside` (mm) of it all round them; nothing
+        where it is too small or not known."""
+        tool = self.tool
+        corner, wide = max(tool.corner_radius - inside, 0.0), tool.radius - inside
+        if tool.form not in ROUND or wide <= 0.0:
+            return np.zeros((0, 4))
+        lean = np.linspace(0.0, 0.5 * np.pi, RINGS + 1)
+        height = inside + corner * (1.0 - np.cos(lean))
+        reach = wide - corner * (1.0 - np.sin(lean))
+        top = tool.flute_length - inside
+        height, reach = np.append(height, top), np.append(reach, wide)
+        rows = np.column_stack([height[:-1], reach[:-1], height[1:], reach[1:]])
+        return np.ascontiguousarray(rows[rows[:, 2] > rows[:, 0]])

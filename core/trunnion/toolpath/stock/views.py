@@ -18,6 +18,7 @@ from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.development import Development
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
@@ -27,7 +28,8 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import CELL, MOST_CELLS, PlanningStock
 from trunnion.toolpath.stock.leaning_cuts import LeaningCut
-from trunnion.toolpath.stock.remaining import RemainingStock
+from trunnion.toolpath.stock.remaining import NEAR, RemainingStock
+from trunnion.toolpath.stock.voxels import StockVoxels
 
 NEIGHBOURHOOD = 3
 """Cells that a position is compared with in another field, in each of its directions: the cells it may lie in for all of its own cell."""
@@ -43,6 +45,7 @@ class StockViews:
         self._known: dict[tuple[str, str], str] = {}
         self._grounds: dict[str, tuple[Development, PlanningStock]] = {}
         self._leaning: list[LeaningCut] = []
+        self._voxels: StockVoxels | None = None
 
     def seen(self, setup: Setup, cell: float = 0.0) -> PlanningStock:
         """Return the stock in the frame of a setup (a cutting frame is one), with all that was cut from other directions; in cells of
@@ -103,11 +106,24 @@ class StockViews:
         stock = self.over_ground(ground).after(path, tool, progress)
         self._grounds[digest(ground.development)] = (ground.development, stock)
 
-    def remaining_stock(self, frame: Frame, *, leaning: bool = False) -> RemainingStock:
-        """Return what stands of the blank by all directions together, in a frame; with `leaning` without what leaning tools have cut that
-        was remembered."""
-        fields = [(stock, self._frames[name]) for name, stock in self._stocks.items()]
-        return RemainingStock.of(self._blank, frame, fields, self._leaning if leaning else ())
+    def remaining_stock(
+        self,
+        frame: Frame,
+        part: Callable[[], Skin],
+        *,
+        leaning: bool = False,
+        progress: Progress = NO_PROGRESS,
+    ) -> RemainingStock:
+        """Return what stands of the blank by all directions together, off the part, whose skin in its own coordinates `part`
+        makes, in a frame; with `leaning` without what leaning tools have cut that was remembered."""
+        if self._voxels is None:
+            self._voxels = StockVoxels.of(self._blank, part(), NEAR, progress)
+        for name, stock in self._stocks.items():
+            self._voxels.lower(name, stock, self._frames[name])
+        if leaning:
+            for cut in self._leaning[self._voxels.cuts :]:
+                self._voxels.cut(cut, progress)
+        return self._voxels.remaining(frame, leaning=leaning)
 
     def cut(
         self,

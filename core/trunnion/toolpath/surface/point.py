@@ -216,7 +216,7 @@ def point(
                 )
             )
     thickness = max(STOCK_SHARE * data.depth, LEAST_STOCK)
-    around = StockClearance.of(drive, tool, thickness)
+    around = StockClearance(drive, tool, thickness)
     queries = around.queries(drive.query_for, query, wary=settings.wary)
     done = PointMilledPasses(passes=(), rest=contact_lines, remaining=1.0)
     for n, free in enumerate(queries):

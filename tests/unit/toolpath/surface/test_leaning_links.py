@@ -20,7 +20,8 @@ from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.linking.pass_order import ordered
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stock_clearance import StockClearance
-from trunnion.toolpath.stock.remaining import RemainingStock
+from trunnion.toolpath.stock.remaining import NEAR
+from trunnion.toolpath.stock.voxels import StockVoxels
 from verify_tools import bull
 
 BALL = bull(6.0, 3.0)()
@@ -186,13 +187,14 @@ def rapids_among_stock(query_for=None):
         material="7050-T7451",
         density=2.83,
     )
-    drive, *_ = driven(grid(lambda x, y: 0.0 * x, n=30))
+    skin = grid(lambda x, y: 0.0 * x, n=30)
+    drive, *_ = driven(skin)
     drive = replace(
         drive,
-        remaining_stock=RemainingStock.of(blank, WORLD, []),
+        remaining_stock=StockVoxels.of(blank, skin, NEAR).remaining(WORLD, leaning=False),
         query_for=query_for or (lambda tool: everywhere),
     )
-    return StockClearance.of(drive, BALL, 1.0)
+    return StockClearance(drive, BALL, 1.0)
 
 
 def between(air, start, first, end, last):

@@ -304,7 +304,7 @@ def test_passes_of_constant_scallop_are_milled_by_points_too() -> None:
 def test_what_lies_under_stock_stays_and_is_told_apart_from_what_no_lean_reaches(roughed) -> None:
     drive, setup, stock = strip()
     block = np.argwhere(np.ones((30, 60, 40))) + [-15.0, -25.0, 16.0]
-    standing = RemainingStock(points=np.zeros((0, 3)) if roughed else block, cell=1.0)
+    standing = RemainingStock(points=np.zeros((0, 3)) if roughed else block, side=1.0)
     drive = replace(drive, query_for=Boxes(FLOOR), remaining_stock=standing)
     plan = point(
         drive, BALL, DATA, stock, setup, choose(PointSettings, {"surface.point.steepest": 40.0})

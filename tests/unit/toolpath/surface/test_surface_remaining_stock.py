@@ -6,13 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 
 from surface_drives import DATA, driven, grid, joined
 from trunnion.geometry.frame import WORLD
-from trunnion.geometry.kernels.bodies import (
-    bodies_hold_reference,
-    lattice_held,
-    lattice_held_reference,
+from trunnion.geometry.kernels.bodies import bodies_hold_reference
+from trunnion.geometry.kernels.voxels import (
+    voxels_above,
+    voxels_above_reference,
+    voxels_held,
+    voxels_held_reference,
 )
 from trunnion.geometry.point_groups import PointGroups
 from trunnion.geometry.sheet.skin import Skin
@@ -25,8 +30,9 @@ from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stock_clearance import StockClearance, grown
 from trunnion.toolpath.stock.heightfield import PlanningStock
-from trunnion.toolpath.stock.remaining import RemainingStock
+from trunnion.toolpath.stock.leaning_cuts import LeaningCut
 from trunnion.toolpath.stock.views import StockViews
+from trunnion.toolpath.stock.voxels import StockVoxels, samples_of
 from verify_tools import bull
 
 BALL = replace(bull(6.0, 3.0)(), flute_length=8.0, neck_length=20.0)
@@ -49,6 +55,18 @@ def cleared(depth, past):
     rows = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell > past
     heights[rows] = depth
     return replace(stock, field=heights)
+
+
+def far_part():
+    """Return a floor far below the blank."""
+    return grid(lambda x, y: -50.0 + 0.0 * x)
+
+
+def standing_below(field, part=None, near=1.0):
+    """Return what stands below a field in the blank, off a part that is far below it where none is given."""
+    voxels = StockVoxels.of(BLANK, part or far_part(), near)
+    voxels.lower("field", field, WORLD)
+    return voxels.remaining(WORLD, leaning=False)
 
 
 def straight(start, end, axis=UPRIGHT):
@@ -102,15 +120,32 @@ def test_groups_hold_every_point_within_their_balls():
 
 
 def test_what_one_direction_has_cut_stands_no_more():
-    whole = RemainingStock.of(BLANK, WORLD, [(PlanningStock.of(BLANK, SETUP), WORLD)])
-    assert len(whole.points) * whole.cell**3 == pytest.approx(6000.0, rel=0.01)
-    cut = RemainingStock.of(BLANK, WORLD, [(cleared(4.0, 20.0), WORLD)])
+    whole, cut = (standing_below(f) for f in (PlanningStock.of(BLANK, SETUP), cleared(4.0, 20.0)))
+    # Only the outermost voxels are asked for, which are those in the blank's sides.
+    inside = ((whole.points > 0.6) & (whole.points < BLANK.high - 0.6)).all(axis=1)
+    assert not inside.any() and len(whole.points) == 60 * 40 * 20 - 58 * 38 * 18
     gone = (cut.points[:, 0] > 20.5) & (cut.points[:, 2] > 4.5)
-    assert not gone.any() and len(cut.points) < len(whole.points)
+    assert not gone.any() and (cut.points[:, 2] > 4.5).any()
+    # What was under the cut is outermost now.
+    assert ((cut.points[:, 0] > 21.0) & (np.abs(cut.points[:, 2] - 3.75) < 0.1)).sum() > 500
+
+
+def test_whatever_stands_has_the_middle_of_a_voxel_near():
+    """A skin of 0.1 mm over the floor, and a rib of 0.1 mm on it: less than the voxels."""
+    stock = PlanningStock.of(BLANK, SETUP, 0.05)
+    heights = np.full_like(stock.heights, 4.1)
+    at = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
+    heights[np.abs(at - 12.31) < 0.05] = 7.03
+    stood = standing_below(replace(stock, field=heights))
+    reach = 0.5 * np.sqrt(3.0) * stood.side
+    rib = np.column_stack([np.full(50, 12.31), np.full(50, 9.7), np.linspace(4.2, 7.0, 50)])
+    for point in (*rib, [25.0, 5.0, 4.09]):
+        assert np.linalg.norm(stood.points - point, axis=1).min() <= reach
+    assert not ((stood.points[:, 2] > 4.5) & (np.abs(stood.points[:, 0] - 12.31) > 0.5)).any()
 
 
 def test_a_body_is_clear_where_nothing_stands_and_only_there():
-    stock = RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)])
+    stock = standing_below(cleared(0.0, 10.0))
     tips = np.array([[20.0, 10.0, 2.0], [12.0, 10.0, 2.0], [5.0, 10.0, 2.0]])
     shank = ((0.0, 2.0, 20.0, 2.0),)
     assert stock.is_free(shank, tips, np.tile(UPRIGHT, (3, 1))).tolist() == [True, False, False]
@@ -121,10 +156,29 @@ def test_a_body_is_clear_where_nothing_stands_and_only_there():
 
 
 def test_near_the_part_stock_is_not_counted_nor_is_the_part_itself():
-    stock = RemainingStock.of(BLANK, WORLD, [(PlanningStock.of(BLANK, SETUP), WORLD)])
     floor = grid(lambda x, y: 4.0 + 0.0 * x, n=30)
-    left = stock.beyond(2.0, floor.points, floor.normals)
+    left = standing_below(PlanningStock.of(BLANK, SETUP), floor, near=2.0)
     assert left.points[:, 2].min() > 6.0 and left.points[:, 2].max() > 9.0
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    size=st.tuples(st.integers(1, 14), st.integers(1, 14), st.integers(1, 14)),
+)
+def test_blocks_that_are_far_from_the_part_are_marked_as_their_voxels_would_be(seed, size):
+    pick = np.random.default_rng(seed)
+    wave = pick.uniform(0.0, 1.5, 3)
+    floor = grid(lambda x, y: 4.0 + np.sin(wave[0] * x) + np.cos(wave[1] * y + wave[2]), n=40)
+    high = np.array(size) * 2.0
+    blank = replace(BLANK, high=high)
+    near = pick.uniform(0.2, 3.0)
+    voxels = StockVoxels.of(blank, floor, near)
+    samples = samples_of(floor)
+    middle = voxels.low + np.argwhere(np.ones(voxels.wanted.shape, bool)) * voxels.step
+    away, row = cKDTree(samples.point).query(middle)
+    outside = ((middle - samples.point[row]) * samples.normal[row]).sum(axis=1) > 0.0
+    assert (voxels.wanted.ravel() == (outside & (away > near))).mean() > 0.999
 
 
 def clearance(remaining_stock, skin=None):
@@ -135,18 +189,18 @@ def clearance(remaining_stock, skin=None):
         remaining_stock=remaining_stock,
         query_for=lambda tool: lambda tip, axis, **_: np.ones(len(tip), bool),
     )
-    return StockClearance.of(drive, BALL, 2.0)
+    return StockClearance(drive, BALL, 2.0)
 
 
 def test_a_leaning_tool_keeps_its_shank_out_of_stock_that_stands():
-    around = clearance(RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
+    around = clearance(standing_below(cleared(0.0, 10.0)))
     query = around.with_stock(lambda tip, axis, **_: np.ones(len(tip), bool))
     tip, axes = np.array([[16.0, 10.0, 0.0]] * 2), np.array([LEANING, LEANING * [-1.0, 1.0, 1.0]])
     assert query(tip, axes).tolist() == [True, False]
 
 
 def test_poses_are_asked_for_from_the_safest_to_those_clear_of_the_part_alone():
-    whole = RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)])
+    whole = standing_below(cleared(0.0, 10.0))
     widths, bare = [], lambda tip, axis, **_: np.ones(len(tip), bool)
 
     def query_for(tool):
@@ -178,37 +232,60 @@ def leant(past, y=10.0, low=0.0):
     )
 
 
-def test_the_kernel_that_takes_bodies_off_a_lattice_and_the_plain_one_agree():
+def test_the_kernel_that_takes_bodies_off_voxels_and_the_plain_one_agree():
     pick = np.random.default_rng(7)
     tips, axes = pick.uniform(-2.0, 12.0, (12, 3)), pick.normal(size=(12, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
     rows = np.array([[0.0, 0.2, 1.0, 1.5], [1.0, 1.5, 5.0, 1.5]])
     low, step = np.array([0.3, -0.2, 0.1]), np.array([1.0, 0.9, 1.1])
     found, plain = (np.ones((10, 11, 9), bool) for _ in range(2))
-    lattice_held(found, low, step, tips, axes, rows)
-    lattice_held_reference(plain, low, step, tips, axes, rows)
+    voxels_held(found, low, step, tips, axes, rows)
+    voxels_held_reference(plain, low, step, tips, axes, rows)
     assert (found == plain).all() and 0 < (~found).sum() < 990
+
+
+@pytest.mark.parametrize("side", [0.4, 1.7])
+def test_the_kernel_that_takes_off_what_is_above_a_field_and_the_plain_one_agree(side):
+    pick = np.random.default_rng(9)
+    low, step = np.array([0.3, -0.2, 0.1]), np.array([1.0, 0.9, 1.1])
+    heights = pick.uniform(-8.0, 10.0, (20, 30))
+    for _ in range(6):
+        turn = np.linalg.qr(pick.normal(size=(3, 3)))[0]
+        shift, corner = pick.uniform(-3.0, 3.0, 3), pick.uniform(-8.0, 0.0, 2)
+        found = pick.random((10, 11, 9)) < 0.8
+        plain, before = found.copy(), int(found.sum())
+        place = (low, step, turn, shift, heights, corner, side)
+        voxels_above(found, *place)
+        voxels_above_reference(plain, *place)
+        assert (found == plain).all() and 0 < found.sum() < before
 
 
 def test_what_a_leaning_tool_has_cut_stands_no_more_where_that_is_asked_for():
     views = StockViews(BLANK)
     views.seen(SETUP)
     assert not views.cut(SETUP, leant(10.0), BALL, remember=True)
-    asked, unasked = (views.remaining_stock(WORLD, leaning=v) for v in (True, False))
-    gone = {tuple(p) for p in unasked.points.round(6).tolist()} - {
-        tuple(p) for p in asked.points.round(6).tolist()
-    }
-    assert len(asked.points) + len(gone) == len(unasked.points)
-    # All of it lies in the flutes of 8 mm over the way of the ball, and nearly all of that is in the blank.
-    at = np.array(sorted(gone))
-    off = at - [0.0, 10.0, 0.0]
-    assert np.abs(off[:, 1]).max() < BALL.radius and (at[:, 2] < 8.0).all()
-    across = np.abs(off @ [0.0, 1.0, 0.0]) < 2.0
-    assert across.any() and asked.cut and not unasked.cut
-    assert asked.cut != StockViews(BLANK).remaining_stock(WORLD, leaning=True).cut
+    asked, unasked = (views.remaining_stock(WORLD, far_part, leaning=v) for v in (True, False))
+    assert asked.cut and not unasked.cut
+    assert asked.cut != StockViews(BLANK).remaining_stock(WORLD, far_part, leaning=True).cut
     forgotten = StockViews(BLANK)
     forgotten.cut(SETUP, leant(10.0), BALL)
-    assert not forgotten.remaining_stock(WORLD, leaning=True).cut
+    assert not forgotten.remaining_stock(WORLD, far_part, leaning=True).cut
+
+
+def test_a_voxel_is_cut_where_all_of_it_is_in_the_flutes():
+    voxels = StockVoxels.of(BLANK, far_part(), 1.0)
+    voxels.cut(LeaningCut(leant(10.0), BALL, WORLD))
+    rows = np.argwhere(voxels.wanted & ~voxels.uncut)
+    signs = np.argwhere(np.ones((2, 2, 2), dtype=bool)) - 0.5
+    corners = (voxels.low + (rows[:, None] + signs) * voxels.step).reshape(-1, 3)
+    # Beside the way in, the flutes stand over the line y = 10, z = 0, leaning.
+    along = corners[corners[:, 0] < 29.0] - [0.0, 10.0, 0.0]
+    top = LEANING[2] * BALL.flute_length + LEANING[0] * BALL.radius
+    assert len(rows) > 500 and (along[:, 2] <= top + 1e-9).all()
+    assert (np.abs(along[:, 1]) <= BALL.radius + 1e-9).all()
+    middle = np.array([[20.0, 10.0, 0.0]]) + LEANING * BALL.radius
+    at = np.floor((middle[0] - voxels.low) / voxels.step + 0.5).astype(int)
+    assert not voxels.uncut[tuple(at)]
 
 
 def test_a_shank_goes_where_an_earlier_leaning_tool_has_cut():
@@ -219,12 +296,12 @@ def test_a_shank_goes_where_an_earlier_leaning_tool_has_cut():
     tip, axis = np.array([[20.0, 10.0, 3.0]]), LEANING[None]
     shank = ((5.0, 1.0, 20.0, 1.0),)
     for leaning in (True, False):
-        stock = views.remaining_stock(WORLD, leaning=leaning)
+        stock = views.remaining_stock(WORLD, far_part, leaning=leaning)
         assert bool(stock.is_free(shank, tip, axis)[0]) is leaning
 
 
 def test_a_tool_goes_out_at_feed_until_it_has_left_the_stock():
-    around = clearance(RemainingStock.of(BLANK, WORLD, [(cleared(0.0, 10.0), WORLD)]))
+    around = clearance(standing_below(cleared(0.0, 10.0)))
     beside, below = around.retreats(
         np.array([[25.0, 10.0, 0.0], [8.0, 10.0, 1.0]]), np.array([LEANING, UPRIGHT])
     )
