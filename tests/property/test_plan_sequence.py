@@ -7,7 +7,7 @@ from itertools import pairwise, permutations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trunnion.plan.sequence import OrderedOperation, ordered
+from trunnion.plan.sequence import OrderedOperation, Precedence, ordered
 
 
 @st.composite
@@ -49,3 +49,28 @@ def test_the_order_does_not_depend_on_how_the_jobs_were_given(jobs, random):
     mixed = list(jobs)
     random.shuffle(mixed)
     assert ordered(mixed) == ordered(jobs)
+
+
+@given(
+    pairs=st.lists(st.tuples(st.integers(0, 7), st.integers(0, 7), st.booleans()), max_size=40),
+)
+def test_preferences_never_make_jobs_wait_in_a_circle(pairs):
+    after = Precedence(8)
+    for job, before, needed in sorted(pairs, key=lambda p: not (p[2] and p[1] < p[0])):
+        # What is needed is no circle: a job needs those with lower numbers alone.
+        if needed and before < job:
+            after.add(job, before)
+        else:
+            after.prefer(job, before)
+    done: set[int] = set()
+    while ready := [n for n in range(8) if n not in done and after.direct[n] <= done]:
+        done.update(ready)
+    assert len(done) == 8
+    for job, before, _ in pairs:
+        waits = after.direct[job]
+        assert before in waits or before == job or _is_before(after, before, job)
+
+
+def _is_before(after, job, other):
+    """Return whether a job waits for another one, over others too."""
+    return other in after.direct[job] or any(_is_before(after, n, other) for n in after.direct[job])

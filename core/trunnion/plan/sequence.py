@@ -19,6 +19,28 @@ class OrderedOperation:
     after: frozenset[str]
 
 
+class Precedence:
+    """What comes before each of `count` jobs: `direct[n]` are the jobs that were said to come before n."""
+
+    def __init__(self, count: int) -> None:
+        self.direct: list[set[int]] = [set() for _ in range(count)]
+        # All jobs before each one, over others too, as bits of a number.
+        self._all = [0] * count
+
+    def add(self, job: int, before: int) -> None:
+        """Say that a job waits for another one."""
+        self.direct[job].add(before)
+        more = self._all[before] | 1 << before
+        for n in range(len(self._all)):
+            if n == job or self._all[n] >> job & 1:
+                self._all[n] |= more
+
+    def prefer(self, job: int, before: int) -> None:
+        """Say that a job waits for another one, unless that one waits for it, over others too."""
+        if job != before and not self._all[before] >> job & 1:
+            self.add(job, before)
+
+
 def ordered(jobs: Sequence[OrderedOperation]) -> tuple[str, ...]:
     """Return the ids in an order that keeps every `after` with the fewest tool changes; the same jobs give the same order.
 

@@ -49,8 +49,8 @@ def with_choice(operation, key, value):
 def test_a_leaning_cutter_comes_after_the_upright_ones_whose_rest_it_takes(diameter):
     upright, other = semi("upright", (1, 2), 5.0), semi("other", (3,), 5.0)
     leaning = with_choice(semi("leaning", (1,), diameter), UPRIGHT_EARLIER, "D3")
-    for given in ((leaning, upright, other), (other, leaning, upright)):
-        order = in_turn(*given)
+    for operations in ((leaning, upright, other), (other, leaning, upright)):
+        order = in_turn(*operations)
         assert order.index("semi-upright") < order.index("semi-leaning")
 
 
@@ -60,3 +60,23 @@ def test_a_rest_comes_after_the_cutter_that_leaves_it():
     last = with_choice(semi("last", (2,), 3.0), EARLIER, "D4")
     finishing = [replace(o, kind="rest_finish") for o in (last, rest, wide)]
     assert in_turn(*finishing) == ["semi-wide", "semi-rest", "semi-last"]
+
+
+def test_larger_leaning_cutters_of_other_areas_hold_no_upright_one_back():
+    """A leaning cutter is larger than the upright ones, and waits for that of its own area: the areas would wait for each other."""
+    areas = [((1,), "one"), ((2,), "two"), ((3,), "three")]
+    upright = [semi(name, faces, 5.0) for faces, name in areas]
+    leaning = [
+        with_choice(semi(f"{name}-leaning", faces, 16.0), UPRIGHT_EARLIER, "D5")
+        for faces, name in areas
+    ]
+    operations = [o for pair in zip(upright, leaning, strict=True) for o in pair]
+    order = in_turn(*operations)
+    assert sorted(order[:3]) == sorted(o.id for o in upright)
+
+
+def test_what_hangs_over_comes_after_the_upright_cutter_whose_rest_it_is():
+    upright, below = semi("upright", (1, 3), 5.0), semi("below", (2,), 5.0)
+    over = with_choice(semi("over", (3,), 4.0), UPRIGHT_EARLIER, "D5")
+    order = in_turn(upright, below, over, hanging={3})
+    assert order == ["semi-upright", "semi-over", "semi-below"]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from trunnion.model.operation import Operation
 from trunnion.plan.freeform.keys import EARLIER, UPRIGHT_EARLIER
-from trunnion.plan.sequence import OrderedOperation, ordered
+from trunnion.plan.sequence import OrderedOperation, Precedence, ordered
 from trunnion.plan.surface.plan_state import SurfacePlanState
 from trunnion.shop import Stage
 
@@ -22,26 +22,19 @@ def in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation
     """Return the operations in the order of the plan's stages, with as few tool changes as that allows."""
     rank = {stage.name: n for n, stage in enumerate(stages)}
     by_stage = {stage.name: stage for stage in stages}
+    row = {o.id: n for n, o in enumerate(state.operations)}
+    after = Precedence(len(row))
+    for needed in (True, False):
+        for o in state.operations:
+            for other in state.operations:
+                if needed and _has_to_wait(o, other, by_stage[o.group]):
+                    after.add(row[o.id], row[other.id])
+                elif not needed and _had_better_wait(state, o, other):
+                    after.prefer(row[o.id], row[other.id])
     jobs, done = [], {}
-    for o in state.operations:
-        stage = by_stage[o.group]
-        before = {
-            other.id
-            for other in state.operations
-            if other.group in stage.after_all
-            or (other.group in stage.after and set(other.faces or o.faces) & set(o.faces))
-            or other.id == o.id + FIRST
-            or _is_rest_of(o, other)
-            or (other.group == o.group and _is_over(state, other) and not _is_over(state, o))
-            or (
-                o.kind in FALLING
-                and other.group == o.group
-                and other.cutter.diameter > o.cutter.diameter
-                and not _is_rest_of(other, o)
-                and _is_over(state, other) == _is_over(state, o)
-            )
-        }
-        done[o.id] = replace(o, after=tuple(sorted(before)))
+    for n, o in enumerate(state.operations):
+        before = sorted(state.operations[k].id for k in after.direct[n])
+        done[o.id] = replace(o, after=tuple(before))
         jobs.append(
             OrderedOperation(
                 id=o.id,
@@ -52,6 +45,33 @@ def in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation
             )
         )
     return [done[id] for id in ordered(jobs)]
+
+
+def _has_to_wait(operation: Operation, other: Operation, stage: Stage) -> bool:
+    """Return whether an operation of a stage can't be cut before another one."""
+    return (
+        other.group in stage.after_all
+        or (
+            other.group in stage.after
+            and not set(other.faces or operation.faces).isdisjoint(operation.faces)
+        )
+        or other.id == operation.id + FIRST
+        or _is_rest_of(operation, other)
+    )
+
+
+def _had_better_wait(state: SurfacePlanState, operation: Operation, other: Operation) -> bool:
+    """Return whether an operation is cut easier after another one of its stage: after those on hidden faces; after larger cutters, where
+    both lean or neither does."""
+    if operation.group != other.group:
+        return False
+    over, is_over = _is_over(state, other), _is_over(state, operation)
+    return (over and not is_over) or (
+        over == is_over
+        and operation.kind in FALLING
+        and (UPRIGHT_EARLIER in operation.choices) == (UPRIGHT_EARLIER in other.choices)
+        and other.cutter.diameter > operation.cutter.diameter
+    )
 
 
 def _is_rest_of(operation: Operation, other: Operation) -> bool:
