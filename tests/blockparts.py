@@ -33,17 +33,19 @@ class BlockPart:
         return _graph(self).in_frame(_inverse(self.placed))
 
     def section(self, frame: Frame, z: float) -> Region:
-        """Return the material that a plane cuts; the frame's z must run along the blocks' z."""
-        up = float(frame.z @ self.placed.z)
-        assert abs(abs(up) - 1.0) < 1e-6, "sections of blocks are cut across their z only"
-        point = self.placed.to_local(frame.to_world(np.array([0.0, 0.0, z])))
-        layer = int(np.searchsorted(self.breaks[2], point[2])) - 1
-        if not 0 <= layer < self.full.shape[2]:
+        """Return the material that a plane cuts; the frame's z must run along an axis of the blocks."""
+        along = self.placed.local_direction(frame.z)
+        axis = int(np.argmax(np.abs(along)))
+        assert abs(abs(float(along[axis])) - 1.0) < 1e-6, "blocks are cut across an axis of theirs"
+        level = float(self.placed.to_local(frame.to_world(np.array([0.0, 0.0, z])))[axis])
+        layer = int(np.searchsorted(self.breaks[axis], level)) - 1
+        if not 0 <= layer < self.full.shape[axis]:
             return Region()
-        xs, ys, _ = self.breaks
+        u, v = [a for a in range(3) if a != axis]
+        us, vs = self.breaks[u], self.breaks[v]
         cells = [
-            shapely.box(xs[i], ys[j], xs[i + 1], ys[j + 1])
-            for i, j in np.argwhere(self.full[:, :, layer])
+            shapely.box(us[i], vs[j], us[i + 1], vs[j + 1])
+            for i, j in np.argwhere(self.full.take(layer, axis))
         ]
         rings = [
             r
@@ -51,13 +53,13 @@ class BlockPart:
             for r in (p.exterior, *p.interiors)
         ]
         return Region.of(
-            [Curve.polygon(self._moved(np.asarray(r.coords)[:-1], frame)) for r in rings]
+            [Curve.polygon(self._moved(np.asarray(r.coords)[:-1], (u, v), frame)) for r in rings]
         )
 
-    def _moved(self, points: np.ndarray, frame: Frame) -> np.ndarray:
-        return frame.to_local(
-            self.placed.to_world(np.column_stack([points, np.zeros(len(points))]))
-        )[:, :2]
+    def _moved(self, points: np.ndarray, axes: tuple[int, int], frame: Frame) -> np.ndarray:
+        there = np.zeros((len(points), 3))
+        there[:, list(axes)] = points
+        return frame.to_local(self.placed.to_world(there))[:, :2]
 
 
 def terrace(

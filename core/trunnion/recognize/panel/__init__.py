@@ -11,9 +11,8 @@ from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.recognize.contract import Slicer, Smallest, Suitability
-from trunnion.recognize.extent import box
 from trunnion.recognize.holes.recognize import find_holes
-from trunnion.recognize.panel.classes import FaceClass, classify
+from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.describe import DESCRIBABLE, described
 from trunnion.recognize.panel.details import make_details
 from trunnion.recognize.panel.features import (
@@ -23,15 +22,16 @@ from trunnion.recognize.panel.features import (
     make_features,
     make_profile,
 )
-from trunnion.recognize.panel.frame import choose_frame, flipped
+from trunnion.recognize.panel.frame import choose_frame
 from trunnion.recognize.panel.holes import PanelHoles
 from trunnion.recognize.panel.kinds import KINDS
+from trunnion.recognize.panel.level import level_features
 from trunnion.recognize.panel.pockets.rules import GraphFeatures, pockets_of, without
 from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.side import PanelSide
-from trunnion.recognize.panel.slicing.slices import cut, heights
 from trunnion.recognize.panel.suitability import suitability
 from trunnion.recognize.panel.unexplained import rest_findings
+from trunnion.recognize.panel.views import upright_views
 
 
 class PanelFamily:
@@ -79,7 +79,9 @@ class PanelFamily:
         frame = progress.aside(lambda _: choose_frame(graph, settings))
         progress.at(0.05, "looking for holes")
         holes = progress.aside(partial(_holes, graph, frame, settings))
-        above, below = _views(graph, frame, slicer, settings, holes.rows, progress.part(0.1, 0.7))
+        above, below = upright_views(
+            graph, frame, slicer, settings, holes.rows, progress.part(0.1, 0.7)
+        )
         shown = []
         for view, share in ((above, 0.7), (below, 0.8)):
             progress.at(share, "growing pockets")
@@ -93,6 +95,11 @@ class PanelFamily:
             made = progress.aside(partial(_made, view, without(seen, done), above.graph, numbers))
             features.extend(made.features)
             findings.extend(made.findings)
+        edges = _surroundings(above, shown, features).features
+        rest = set(_unexplained(above, (*features, *edges))) - holes.rows
+        level = level_features(above, graph, frame, slicer, rest, numbers, progress.part(0.9, 0.95))
+        features.extend(level.features)
+        findings.extend(level.findings)
         features.extend(holes.features(features, numbers))
         around = _surroundings(above, shown, features)
         features.extend(around.features)
@@ -149,48 +156,6 @@ def _made(
     progress: Progress,
 ) -> SideFeatures:
     return make_features(view, seen, graph, numbers)
-
-
-def _views(
-    graph: FaceGraph,
-    frame: Frame,
-    slicer: Slicer,
-    settings: PanelSettings,
-    holes: frozenset[int],
-    progress: Progress,
-) -> tuple[PanelSide, PanelSide]:
-    """Return the part as seen from above and from below, cut once for both."""
-    local = graph.in_frame(frame)
-    low, high = box(local)
-    width, height = float(high[1]), float(high[2])
-    classes = classify(local, settings)
-    slices = cut(
-        slicer,
-        frame,
-        heights(local, classes, float(low[2]), height, settings.slicing_depth),
-        progress,
-    )
-    turned = graph.in_frame(flipped(frame, width, height))
-    return (
-        PanelSide(
-            graph=local,
-            classes=classes,
-            slices=slices,
-            height=height,
-            settings=settings,
-            below=False,
-            holes=holes,
-        ),
-        PanelSide(
-            graph=turned,
-            classes=classify(turned, settings),
-            slices=slices.flipped(width, height),
-            height=height,
-            settings=settings,
-            below=True,
-            holes=holes,
-        ),
-    )
 
 
 def _surroundings(

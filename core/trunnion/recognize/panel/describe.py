@@ -1,6 +1,7 @@
 """What faces that a person has chosen are in a feature of a panel: their roles by class and blend, sizes as recognition has them.
 
-Which side a feature is seen from follows from its level faces: those that look up from one side of the panel.
+Which side a feature is seen from follows from its faces: those that look up from one side of the panel; what has such from both is seen
+along it.
 """
 
 from __future__ import annotations
@@ -20,9 +21,11 @@ from trunnion.recognize.panel.features import make_boss, make_island, make_rib, 
 from trunnion.recognize.panel.frame import flipped
 from trunnion.recognize.panel.pockets.rules import Island, Pocket
 from trunnion.recognize.panel.settings import PanelSettings
-from trunnion.recognize.panel.side import PanelSide
+from trunnion.recognize.panel.side import ABOVE, BELOW, Direction, PanelSide
 from trunnion.recognize.panel.sizes import pocket_sizes
 from trunnion.recognize.panel.slicing.slices import Slices
+from trunnion.recognize.panel.views import bottom_along, level_frame, named_direction
+from trunnion.tolerance import ANGLE
 from trunnion.units import rounded
 
 POCKETS = ("pocket", "open_pocket")
@@ -56,23 +59,44 @@ def described(
 def _side(
     feature: Feature, found: Recognition, graph: FaceGraph, settings: PanelSettings
 ) -> PanelSide:
-    """Return the panel from the side that a feature's level faces look up on, from above where none does."""
+    """Return the panel from the side that a feature's level faces look up on, from above where none does; along it where some of its faces
+    look up and others down."""
     local = graph.in_frame(found.frame)
     high = box(local)[1]
     rows = [tag - 1 for tag in feature.tags]
-    up, down = (
-        sum(bool(s * local.normal[r, 2] > np.cos(np.pi / 4)) for r in rows) for s in (1.0, -1.0)
-    )
-    below = down > up
-    seen = graph.in_frame(flipped(found.frame, float(high[1]), float(high[2]))) if below else local
+    direction = _direction(local, rows)
+    if direction in (ABOVE, BELOW):
+        over = flipped(found.frame, float(high[1]), float(high[2]))
+        seen, height, bottom = over if direction == BELOW else found.frame, float(high[2]), 0.0
+    else:
+        seen = level_frame(graph, found.frame, direction)
+        height = float(box(graph.in_frame(seen))[1][2])
+        bottom = bottom_along(found.frame, seen, direction)
+    turned = graph.in_frame(seen)
     return PanelSide(
-        graph=seen,
-        classes=classify(seen, settings),
+        graph=turned,
+        classes=classify(turned, settings),
         slices=Slices(layers=(), outline=shapely.Polygon()),
-        height=float(high[2]),
+        height=height,
         settings=settings,
-        below=below,
+        direction=direction,
+        bottom=bottom,
     )
+
+
+def _direction(graph: FaceGraph, rows: Sequence[int]) -> Direction:
+    """Return where a feature's faces (rows) are seen from: above or below, unless some look up and others down; then the level direction
+    that one of them looks in and none away from, if there is one."""
+    up, down = (
+        sum(bool(s * graph.normal[r, 2] > np.cos(np.pi / 4)) for r in rows) for s in (1.0, -1.0)
+    )
+    if up and down:
+        for r in sorted(rows, key=lambda r: -float(graph.area[r])):
+            if graph.surface[r] == "plane" and abs(float(graph.normal[r, 2])) < np.sin(ANGLE):
+                out = graph.normal[r]
+                if (graph.normal[list(rows)] @ out > -np.sin(ANGLE)).all():
+                    return named_direction(out)
+    return BELOW if down > up else ABOVE
 
 
 def _sorted(
@@ -116,19 +140,19 @@ def _pocket(
     pocket = _pocket_of(view, rows)
     if not pocket.sides and not pocket.floors:
         raise BadInput(f"{feature.id}: a pocket needs a floor or a wall; add one to it")
-    ribs = [f.tags[0] - 1 for f in found.of_kind("rib") if _is_below(f) == view.below]
+    ribs = [f.tags[0] - 1 for f in found.of_kind("rib") if _seen_from(f) == view.direction]
     sizes = pocket_sizes(view, pocket, ribs)
     main = graph.in_frame(found.frame)
     at = list(pocket.floors or pocket.sides)
-    x, y = (0.5 * (main.box_low[at].min(axis=0) + main.box_high[at].max(axis=0)))[:2].tolist()
+    middle = 0.5 * (main.box_low[at].min(axis=0) + main.box_high[at].max(axis=0))
+    x, y, z = (rounded(v) for v in middle.tolist())
     attributes: dict[str, Size] = {
-        "centre": (rounded(x), rounded(y), float(sizes["floor_z"])),  # type: ignore[arg-type]
+        "centre": (x, y, z if view.is_level else float(sizes["floor_z"])),  # type: ignore[arg-type]
         "identification": feature.kind,
     }
     if not pocket.floors:
         attributes["through"] = True
-    if view.below:
-        attributes["direction"] = (0.0, 0.0, -1.0)
+    attributes |= view.attributes
     if "nested_in" in feature.attributes:
         attributes["nested_in"] = feature.attributes["nested_in"]
     return replace(feature, faces=pocket_faces(view, pocket), sizes=sizes, attributes=attributes)
@@ -166,7 +190,7 @@ def _rib(view: PanelSide, feature: Feature, rows: Sequence[int], found: Recognit
     pockets = [
         _pocket_of(view, [t - 1 for t in f.tags])
         for f in found.of_kind(*POCKETS)
-        if _is_below(f) == view.below
+        if _seen_from(f) == view.direction
     ]
     return make_rib(view, feature.id, level[0], pockets)
 
@@ -180,5 +204,5 @@ def _boss(view: PanelSide, feature: Feature, rows: Sequence[int]) -> Feature:
     return make_boss(view, feature.id, level[0])
 
 
-def _is_below(feature: Feature) -> bool:
-    return "direction" in feature.attributes
+def _seen_from(feature: Feature) -> Size:
+    return feature.attributes.get("direction", ABOVE)

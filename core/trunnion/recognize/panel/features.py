@@ -70,13 +70,17 @@ def make_features(
 ) -> SideFeatures:
     """Return pockets, islands, ribs and bosses of one side; `main` is the graph in the recognition's frame."""
 
-    def middle(faces: Sequence[int]) -> tuple[float, float]:
+    def middle(faces: Sequence[int]) -> tuple[float, float, float]:
         low, high = main.box_low[list(faces)].min(axis=0), main.box_high[list(faces)].max(axis=0)
-        return float(0.5 * (low[0] + high[0])), float(0.5 * (low[1] + high[1]))
+        x, y, z = (0.5 * (low + high)).tolist()
+        return x, y, z
+
+    def in_plan(faces: Sequence[int]) -> tuple[float, float]:
+        return middle(faces)[:2]
 
     checked = in_rows(
         [confirm(view, p) for p in shown.pockets],
-        lambda c: middle(c.pocket.floors or c.pocket.sides),
+        lambda c: in_plan(c.pocket.floors or c.pocket.sides),
     )
     named = [(numbers.next("open_pocket" if c.open else "pocket"), c) for c in checked]
     ids = {floor: id for id, c in named for floor in c.pocket.floors}
@@ -87,12 +91,12 @@ def make_features(
         features.append(feature)
         findings.extend(found)
     islands = [(i, id) for id, c in named for i in c.pocket.islands]
-    for island, inside in in_rows(islands, lambda pair: middle(pair[0].faces)):
+    for island, inside in in_rows(islands, lambda pair: in_plan(pair[0].faces)):
         features.append(make_island(view, numbers.next("island"), island, inside))
     pockets = [c.pocket for _, c in named]
-    for top in in_rows(shown.ribs, lambda r: middle((r,))):
+    for top in in_rows(shown.ribs, lambda r: in_plan((r,))):
         features.append(make_rib(view, numbers.next("rib"), top, pockets))
-    for top in in_rows(shown.bosses, lambda r: middle((r,))):
+    for top in in_rows(shown.bosses, lambda r: in_plan((r,))):
         features.append(make_boss(view, numbers.next("boss"), top))
     return SideFeatures(features=tuple(features), findings=tuple(findings))
 
@@ -139,21 +143,20 @@ def _pocket(
     confirmed: ConfirmedPocket,
     ribs: Sequence[int],
     ids: dict[int, str],
-    middle: Callable[[Sequence[int]], tuple[float, float]],
+    middle: Callable[[Sequence[int]], tuple[float, float, float]],
 ) -> tuple[Feature, tuple[Finding, ...]]:
     pocket, kind = confirmed.pocket, "open_pocket" if confirmed.open else "pocket"
     sizes = pocket_sizes(view, pocket, ribs)
-    x, y = middle(pocket.floors or pocket.sides)
+    x, y, z = (rounded(v) for v in middle(pocket.floors or pocket.sides))
     attributes: dict[str, Size] = {
-        "centre": (rounded(x), rounded(y), float(sizes["floor_z"])),  # type: ignore[arg-type]
+        "centre": (x, y, z if view.is_level else float(sizes["floor_z"])),  # type: ignore[arg-type]
         "identification": kind,
     }
     if not pocket.floors:
         attributes["through"] = True
     if pocket.parent is not None and pocket.parent in ids:
         attributes["nested_in"] = ids[pocket.parent]
-    if view.below:
-        attributes["direction"] = (0.0, 0.0, -1.0)
+    attributes |= view.attributes
     findings = list(confirmed.findings)
     reason = refusal(view, confirmed)
     if reason is not None:
@@ -204,8 +207,7 @@ def make_island(view: PanelSide, id: str, island: Island, inside: str) -> Featur
         *_roles("floor_fillet", island.fillets),
     )
     attributes: dict[str, Size] = {"in": inside}
-    if view.below:
-        attributes["direction"] = (0.0, 0.0, -1.0)
+    attributes |= view.attributes
     return Feature(
         id=id,
         kind="island",
@@ -223,26 +225,24 @@ def make_rib(view: PanelSide, id: str, top: int, pockets: Sequence[Pocket]) -> F
         if view.graph.convexity[e] == CONVEX
     }
     floors = [f for p in pockets if adjacent.intersection(p.sides) for f in p.floors]
-    attributes: dict[str, Size] = {"direction": (0.0, 0.0, -1.0)} if view.below else {}
     return Feature(
         id=id,
         kind="rib",
         faces=(FaceRole(role="top", face=top + 1),),
         sizes=rib_sizes(view, top, floors),
-        attributes=attributes,
+        attributes=view.attributes,
     )
 
 
 def make_boss(view: PanelSide, id: str, top: int) -> Feature:
     """Return the boss with a top: what is lower than the part's top, too wide for a rib and in no pocket. Its sides are the outline and
     walls of the pockets beside it."""
-    attributes: dict[str, Size] = {"direction": (0.0, 0.0, -1.0)} if view.below else {}
     return Feature(
         id=id,
         kind="boss",
         faces=(FaceRole(role="top", face=top + 1),),
         sizes=boss_sizes(view, top),
-        attributes=attributes,
+        attributes=view.attributes,
     )
 
 

@@ -1,7 +1,8 @@
 """The frame of a panel: where a programmer would put it, whatever position and unit the file came in.
 
-z is the normal with the largest floor area seen from outside (floors lie at the foot of walls, so the flat back doesn't count); where no
-floor tells, holes do. x is the longer side of the smallest rectangle around the outline, the origin the lowest corner of the box.
+z is the normal with the largest floor area seen from outside (floors lie at the foot of walls, so the flat back doesn't count), of those
+that the part has an outermost plane for; where no floor tells, holes do. x is the longer side of the smallest rectangle around the outline,
+the origin the lowest corner of the box.
 Everything is decided by lengths and areas of the part itself, so that the frame moves with the part.
 """
 
@@ -119,10 +120,11 @@ def _height_axis(graph: FaceGraph, hole_diameter: float) -> Floats:
         * sum(float(graph.area[families[n]].sum()) for n in same)
         for same in alike
     ]
+    resting = _resting(graph, families, alike)
     # What is hidden only takes away: once a family's bound is below the best score, neither it nor any after it can win.
     seen: dict[int, Floats] = {}
     both: dict[int, float] = {}
-    for k in sorted(range(len(directions)), key=lambda k: -bound[k]):
+    for k in sorted(resting, key=lambda k: -bound[k]):
         if both and bound[k] < max(both.values()) * (1.0 - BALANCE):
             break
         for n in alike[k]:
@@ -143,6 +145,23 @@ def _height_axis(graph: FaceGraph, hole_diameter: float) -> Floats:
         (directions[k] for k in remaining),
         key=lambda direction: tuple(direction[::-1].round(DECIMALS)),
     )
+
+
+def _resting(
+    graph: FaceGraph, families: Sequence[Sequence[int]], alike: Sequence[Sequence[int]]
+) -> list[int]:
+    """Return the families of parallel planes that the part can lie on: one of them, or of those that look the other way, is outermost;
+    all where none is."""
+    points = np.vstack([graph.start, graph.middle, graph.end, graph.sample_point])
+    found = []
+    for k, same in enumerate(alike):
+        direction = graph.normal[families[k][0]]
+        along = points @ direction
+        ends = (float(along.min()), float(along.max()))
+        at = [float(graph.centre[r] @ direction) for n in same for r in families[n]]
+        if any(abs(a - end) < SLIVER for a in at for end in ends):
+            found.append(k)
+    return found or list(range(len(families)))
 
 
 def _best(rows: Sequence[int], scores: Mapping[int, float]) -> list[int]:

@@ -1,4 +1,8 @@
-"""A panel as it is seen from one side: the graph with z towards the eye, its classes and blends, and the slices."""
+"""A panel as it is seen from one side: the graph with z towards the eye, its classes and blends, and the slices.
+
+A side is named by its direction out of the part in the frame of recognition: `ABOVE`, `BELOW`, or level for what opens at an edge of the
+panel. Heights of features are those of the recognition's frame for the first two, along their own direction for the others.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ import shapely
 
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import FaceGraph
+from trunnion.model.feature import Size
 from trunnion.recognize.grow import samples
 from trunnion.recognize.panel.classes import FaceClass, FaceClasses
 from trunnion.recognize.panel.pockets.blends import floor_fillets, is_corner
@@ -17,26 +22,49 @@ from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.slicing.slices import Slices
 from trunnion.recognize.panel.slicing.tree import SpaceTree, build_tree
 from trunnion.tolerance import SLIVER
-from trunnion.units import radians
+from trunnion.units import radians, rounded
 
 FREE_FORM = ("spline", "revolution", "extrusion", "other")
 """Surfaces of fringes: sides between two curves, ruled as they may be."""
+Direction = tuple[float, float, float]
+ABOVE: Direction = (0.0, 0.0, 1.0)
+BELOW: Direction = (0.0, 0.0, -1.0)
 ON_RIM = 0.05
 """mm: a face whose samples are this near to the outline lies on it (the slices are on chords)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PanelSide:
-    """One side of a panel, z up to it; `height` of the part; `below` marks the side that the recognition's z points away from; `holes` are
-    the rows of the faces of holes, which make no pocket."""
+    """One side of a panel, z up to it, seen from a `direction` in the frame of recognition; `height` of the part that way, and `bottom`,
+    where it begins along the direction from the frame's origin; `holes` are the rows of the faces of holes, which make no pocket."""
 
     graph: FaceGraph
     classes: FaceClasses
     slices: Slices
     height: float
     settings: PanelSettings
-    below: bool
+    direction: Direction = ABOVE
+    bottom: float = 0.0
     holes: frozenset[int] = frozenset()
+
+    @property
+    def below(self) -> bool:
+        """Whether it is the side that the recognition's z points away from."""
+        return self.direction == BELOW
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it is seen along the panel, at one of its edges."""
+        return self.direction not in (ABOVE, BELOW)
+
+    @property
+    def attributes(self) -> dict[str, Size]:
+        """What a feature says of the side that it opens to: nothing where that is above."""
+        return {} if self.direction == ABOVE else {"direction": self.direction}
+
+    def named_height(self, z: float) -> float:
+        """Return a height of this view as sizes give it."""
+        return rounded(self.height - z if self.below else self.bottom + z)
 
     @cached_property
     def fillets(self) -> frozenset[int]:

@@ -1,4 +1,4 @@
-"""Sizes of panel features, named as the words of the trade and the catalogue of truths have them; heights in the recognition's frame."""
+"""Sizes of panel features, named as the words of the trade and the catalogue of truths have them; heights as `side.py` has them."""
 
 from __future__ import annotations
 
@@ -21,11 +21,6 @@ LEAN_STEP = 0.05
 """degrees: leans closer than this are one lean."""
 
 
-def main_z(view: PanelSide, z: float) -> float:
-    """Return a height of a view in the recognition's frame."""
-    return rounded(view.height - z if view.below else z)
-
-
 def pocket_sizes(view: PanelSide, pocket: Pocket, ribs: Iterable[int]) -> dict[str, Size]:
     """Return the sizes of a pocket: depth from its deepest floor to its highest rim, radii for the cutter, leans, rims."""
     graph = view.graph
@@ -33,18 +28,18 @@ def pocket_sizes(view: PanelSide, pocket: Pocket, ribs: Iterable[int]) -> dict[s
     deep = min(view.z(f) for f in pocket.floors or pocket.sides)
     sizes: dict[str, Size] = {
         "depth": rounded(top - deep),
-        "floor_z": main_z(view, deep),
-        "top_z": main_z(view, top),
+        "floor_z": view.named_height(deep),
+        "top_z": view.named_height(top),
     }
     sizes.update(side_sizes(view, pocket.walls, pocket.corners))
     sizes["floor_fillet"] = fillet_radius(view, pocket.fillets, pocket.sharp)
     # A rib that is lower than the fillets at its foot are high meets these, and no wall.
     rims = [view.z(r) for r in ribs if _meets(view, r, (*pocket.sides, *pocket.fillets))]
     if rims and min(rims) < top - SLIVER:
-        sizes["lowest_rim_z"] = main_z(view, min(rims))
+        sizes["lowest_rim_z"] = view.named_height(min(rims))
     flat = [f for f in pocket.floors if view.classes.kind[f] is FaceClass.UP]
     if len(flat) > 1:
-        sizes["floors_z"] = tuple(main_z(view, view.z(f)) for f in flat)
+        sizes["floors_z"] = tuple(view.named_height(view.z(f)) for f in flat)
     return sizes
 
 
@@ -54,7 +49,7 @@ def island_sizes(view: PanelSide, island: Island) -> dict[str, Size]:
         [view.z(t) for t in island.tops] or [float(view.graph.box_high[w][2]) for w in island.walls]
     )
     sizes: dict[str, Size] = {
-        "top_z": main_z(view, top),
+        "top_z": view.named_height(top),
         "height": rounded(top - view.z(island.floor)),
     }
     sizes.update(side_sizes(view, island.walls, island.corners))
@@ -65,7 +60,7 @@ def island_sizes(view: PanelSide, island: Island) -> dict[str, Size]:
 def rib_sizes(view: PanelSide, top: int, floors: Iterable[int]) -> dict[str, Size]:
     """Return the sizes of a rib: thickness at its top, length along its middle line, heights over the floors beside it."""
     z = view.z(top)
-    sizes: dict[str, Size] = {"top_z": main_z(view, z), "below_top": rounded(view.height - z)}
+    sizes: dict[str, Size] = {"top_z": view.named_height(z), "below_top": rounded(view.height - z)}
     thickness, length = strip(view, top)
     adjacent = [view.z(f) for f in floors]
     sizes["thickness"] = rounded(thickness)
@@ -81,7 +76,7 @@ def boss_sizes(view: PanelSide, top: int) -> dict[str, Size]:
     """Return the sizes of a boss: the height of its top, how far that is below the part's, and its area in mm2."""
     z = view.z(top)
     return {
-        "top_z": main_z(view, z),
+        "top_z": view.named_height(z),
         "below_top": rounded(view.height - z),
         "area": rounded(float(view.graph.area[top])),
     }

@@ -12,6 +12,7 @@ from trunnion.recognize.grow import grown, loops
 from trunnion.recognize.panel.classes import STEEP_CLASSES, FaceClass, FaceClasses, classify
 from trunnion.recognize.panel.frame import height_frame
 from trunnion.recognize.panel.settings import PanelSettings
+from trunnion.recognize.tunnels import tunnel_walls
 from trunnion.settings import choose
 from trunnion.units import percent
 
@@ -22,7 +23,8 @@ RULED = ("plane", "cylinder", "cone")
 
 
 def suitability(graph: FaceGraph) -> Suitability:
-    """Return the share of the part's area that lies level or upright in the frame that a panel would have, curved floors of pockets too.
+    """Return the share of the part's area that lies level or upright in the frame that a panel would have, curved floors of pockets, and
+    walls of tunnels along the part too.
 
     Walls may lean; free-form faces that do are no walls of a panel. Faces that enclose no material can't be sliced.
     """
@@ -40,6 +42,7 @@ def suitability(graph: FaceGraph) -> Suitability:
             for k, s in zip(classes.kind, graph.surface, strict=True)
         ]
     )
+    straight |= tunnel_walls(seen, np.array([0.0, 0.0, 1.0]))
     floors = _curved_floors(seen, classes, straight)
     total = graph.area.sum()
     share = min(1.0, float(graph.area[straight | floors].sum() / total))

@@ -9,6 +9,7 @@ from trunnion.geometry.facegraph import FaceGraph
 from trunnion.recognize.contract import Suitability
 from trunnion.recognize.revolution import reach
 from trunnion.recognize.surface.settings import SurfaceSettings
+from trunnion.recognize.tunnels import tunnel_walls
 from trunnion.settings import choose
 from trunnion.tolerance import ANGLE
 from trunnion.units import percent, radians
@@ -34,8 +35,8 @@ def suitability(graph: FaceGraph) -> Suitability:
     """Return how near the curved share of a part's area comes to `ENOUGH`; all patches that are no slivers can be grouped.
 
     A face is curved when it is no plane, stands upright along none of the part's main directions and is no hole; planes that lie inclined
-    to a direction count with them, for no end mill finishes these on its levels either. Of faces that enclose no material nothing else can
-    be made than groups.
+    to a direction count with them, for no end mill finishes these on its levels either, unless they are walls of tunnels along the part.
+    Of faces that enclose no material nothing else can be made than groups.
     """
     whole = float(graph.area.sum())
     if whole == 0.0:
@@ -47,7 +48,10 @@ def suitability(graph: FaceGraph) -> Suitability:
         default=float(graph.area[bent].sum()),
     )
     # Seen along a side's normal an inclined top would be a leaning wall: only the main direction tells.
-    inclined = sum(float(graph.area[_inclined(graph, z)].sum()) for z in directions[:1])
+    inclined = sum(
+        float(graph.area[_inclined(graph, z) & ~tunnel_walls(graph, z)].sum())
+        for z in directions[:1]
+    )
     explained = min(1.0, float(graph.area[~_slivers(graph)].sum()) / whole)
     fits, enclose = (
         (1.0, ", and the faces enclose no material")

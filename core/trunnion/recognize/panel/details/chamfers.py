@@ -83,5 +83,5 @@ def _chamfer(view: PanelSide, group: tuple[int, ...], id: str) -> Feature:
             "width": rounded(_width(view, largest)),
             "angle": rounded(degrees(_slope(view, largest))),
         },
-        attributes={"direction": (0.0, 0.0, -1.0)} if view.below else {},
+        attributes=view.attributes,
     )

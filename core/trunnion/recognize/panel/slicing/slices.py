@@ -18,13 +18,11 @@ from shapely.geometry.base import BaseGeometry
 
 from trunnion.findings import BadInput, Finding, warning
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Slicer
-from trunnion.recognize.panel.classes import FaceClass, FaceClasses
 from trunnion.tolerance import AREA, PARAMETRIC, PLANE_REGION, SLIVER
 
 NARROW = 0.05
@@ -98,18 +96,13 @@ class Slices:
         return Slices(layers=layers, outline=_mirrored(self.outline, width))
 
 
-def heights(
-    graph: FaceGraph, classes: FaceClasses, low: float, high: float, depth: float
-) -> tuple[float, ...]:
-    """Return the heights of all horizontal faces and of the part's bottom and top, and further ones at most `depth` apart.
+def heights(events_at: Iterable[float], low: float, high: float, depth: float) -> tuple[float, ...]:
+    """Return the heights where something begins or ends, all horizontal faces that count, with a part's bottom and top, and further ones at
+    most `depth` apart.
 
     A slice lies between each two of them, so none passes through a floor: what the paper moves its roughing planes for.
     """
-    found = [
-        low,
-        high,
-        *(float(graph.centre[r][2]) for r in classes.rows(FaceClass.UP, FaceClass.DOWN)),
-    ]
+    found = [low, high, *events_at]
     events: list[float] = []
     for z in sorted(found):
         if not events or z - events[-1] > SLIVER:
