@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from seeded.edged_panels import edged_panel
 from seeded.panels import panel
 from seeded.plates import plate
 from trunnion import tolerance
@@ -25,6 +26,12 @@ def _verdict(part, folder):
 @pytest.mark.parametrize("seed", range(210, 218))
 def test_a_random_panel_is_released(seed, tmp_path):
     verdict = _verdict(panel(seed), tmp_path)
+    assert (verdict.collisions, verdict.rapids_in_stock) == (0, 0)
+
+
+@pytest.mark.parametrize("seed", range(210, 216))
+def test_a_random_panel_with_edges_is_released(seed, tmp_path):
+    verdict = _verdict(edged_panel(seed), tmp_path)
     assert (verdict.collisions, verdict.rapids_in_stock) == (0, 0)
 
 

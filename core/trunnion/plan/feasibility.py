@@ -3,9 +3,11 @@ tools than a magazine has places for; and the setups that a route can be made in
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, error, warning
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
@@ -89,8 +91,10 @@ def too_many_tools(
 def both_sides(
     setups: Sequence[Setup], blank: Blank, shop: Shop, settings: SetupSettings
 ) -> Sequence[Setup]:
-    """Return the setups that features may be cut in: where there is one, the part turned over comes after it if its machine takes that."""
-    if len(setups) != 1:
+    """Return the setups that features may be cut in: where none looks from below, the part turned over comes after them if the machine of
+    the first takes that."""
+    first = setups[0]
+    if any(s.frame.z @ first.frame.z < -math.cos(tolerance.ANGLE) for s in setups):
         return setups
-    other = turned_over(blank, replace(settings, machine=setups[0].machine))
+    other = turned_over(blank, replace(settings, machine=first.machine), len(setups))
     return setups if too_large(blank, (other,), shop) else (*setups, other)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from seeded.edged_panels import edged_panel
 from seeded.panels import panel
 from seeded.plates import plate
 from trunnion.findings import Severity
@@ -34,6 +35,21 @@ def test_a_random_panel_is_recognised_and_planned(seed, tmp_path):
     _serves_all(session)
     roughed = {o.feature for o in session.process.operations if o.kind == "rough"}
     assert {f.id for kind in ("pocket", "open_pocket") for f in found.of_kind(kind)} == roughed
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_random_panel_is_cut_on_the_edges_where_something_opens(seed, tmp_path):
+    made = edged_panel(seed)
+    session = _planned(made, tmp_path)
+    found = session.recognition
+    assert found.family == "panel" and found.unexplained == ()
+    assert {kind: len(found.of_kind(kind)) for kind in made.counts} == made.counts
+    _serves_all(session)
+    frames = {s.name: s.frame for s in session.setups}
+    for feature in found.of_kind(*made.counts):
+        out = found.frame.world_direction(feature.attributes.get("direction", (0.0, 0.0, 1.0)))
+        own = [o for o in session.process.operations if feature.id in o.all_features]
+        assert own and all(frames[o.setup].z == pytest.approx(out, abs=1e-6) for o in own)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

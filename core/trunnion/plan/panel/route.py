@@ -24,6 +24,7 @@ from trunnion.plan.cutting.milling import (
 from trunnion.plan.feasibility import both_sides, too_large
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.holes.cutting_data import hole_data, is_on_holes
+from trunnion.plan.panel.edges import lost_on_edges, with_edges
 from trunnion.plan.panel.fallbacks import (
     behind_rest_roughing,
     best_fit,
@@ -103,12 +104,16 @@ def make_route(
         )
     progress.at(0.0, "what is to be cut")
     near = adjacent(recognition, part)
+    words = choices or {}
+    setup_settings = choose(SetupSettings, words)
     freeform = curved is not None and {s.cutter for s in plan.stages} >= NEEDED
     planned, refusals = without_lonely_ribs(
         *plannable(recognition, plan.stages, freeform=freeform), recognition, near
     )
+    setups = with_edges(setups, planned, recognition, blank, shop, setup_settings)
+    refusals |= lost_on_edges(planned, setups, recognition)
+    planned = [f for f in planned if f.id not in refusals]
     findings = not_planned(refusals, recognition)
-    words = choices or {}
     states = [
         PanelPlanState(
             space=SetupSpace.of(part, recognition, blank, setup),
@@ -122,7 +127,7 @@ def make_route(
             progress=progress,
             curved=partial(curved, setup) if curved is not None and freeform else None,
         )
-        for setup in both_sides(setups, blank, shop, choose(SetupSettings, words))
+        for setup in both_sides(setups, blank, shop, setup_settings)
     ]
     operations: list[Operation] = []
     cut: list[Feature] = []

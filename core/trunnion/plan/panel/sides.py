@@ -1,5 +1,5 @@
 """Which setup makes a feature: the first that reaches it. What goes through belongs to the first setup, unless that can't reach it: then to
-the other one, or half to each."""
+the one turned over, or half to each. What opens at an edge belongs to the setup on the other one."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.model.feature import Feature, Recognition
 from trunnion.plan.holes.hole import is_plain_through, is_wider_behind
+from trunnion.plan.panel.edges import number_on_edge
 from trunnion.plan.panel.freeform.slope_tasks import slopes_of
 from trunnion.plan.panel.hole_tasks import hole_reach
 from trunnion.plan.panel.outline_tasks import OUTLINE_TASK_MAKERS
@@ -35,6 +36,27 @@ def shared_out(
     states: Sequence[PanelPlanState], features: Sequence[Feature], stages: Sequence[Stage]
 ) -> list[list[Feature]]:
     """Return the features that each setup cuts, in order; the states are told which of them are cut from both sides."""
+    upright = [n for n, s in enumerate(states) if not s.space.on_edge]
+    own: list[list[Feature]] = [[] for _ in states]
+    rest: list[Feature] = []
+    setups = [state.space.setup for state in states]
+    for feature in features:
+        number = number_on_edge(feature, setups, states[0].recognition)
+        if number is None:
+            rest.append(feature)
+        else:
+            own[number].append(feature)
+    for n, mine in zip(
+        upright, _between_sides([states[n] for n in upright], rest, stages), strict=True
+    ):
+        own[n] += mine
+    return own
+
+
+def _between_sides(
+    states: Sequence[PanelPlanState], features: Sequence[Feature], stages: Sequence[Stage]
+) -> list[list[Feature]]:
+    """Return the features that the upper and the lower side cut; the states are told which of them are cut from both."""
     bored = {kind for s in stages if s.cutter in HOLE_RULES for kind in s.on}
     outlines = {kind for s in stages if s.cutter in PROFILE_RULES for kind in s.on}
     own: list[list[Feature]] = [[] for _ in states]

@@ -178,7 +178,8 @@ def _face_tasks(
 ) -> list[OperationTask]:
     space = state.space
     height = float(space.blank_high[2]) - space.top
-    if height <= tolerance.SEW:
+    # Edges are cut with the outline, from above.
+    if height <= tolerance.SEW or space.on_edge:
         return []
     tops = tuple(
         tag

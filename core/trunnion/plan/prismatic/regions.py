@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -24,6 +25,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.setup import Setup
 from trunnion.plan.prismatic.lean import LEANING, is_freeform
+from trunnion.plan.setups import level_direction
 from trunnion.recognize.grow import bend_radius
 from trunnion.recognize.holes.sweep import arcs, axis_frame, holds
 
@@ -33,6 +35,8 @@ AROUND = 150.0
 LEANING_SECTIONS = 9
 """Sections that the outline is the outermost of where sides of it lean; free-form ones may be widest anywhere."""
 
+MOST_SECTIONS = 40
+"""Sections between level faces that the outline of a part on its edge is made of at most."""
 NEAR = 60.0
 """mm: how far free space is looked at around a top; more than a cutter of the largest diameter and its path in."""
 
@@ -98,6 +102,7 @@ class SetupSpace:
     top: float
     _bands: dict[str, tuple[Band, ...]] = field(init=False, repr=False, default_factory=dict)
     _ceilings: list[_Ceiling] = field(init=False, repr=False, default_factory=list)
+    _silhouette: list[Region] = field(init=False, repr=False, default_factory=list)
     _overheads: dict[tuple[int, float], Region] = field(
         init=False, repr=False, default_factory=dict
     )
@@ -113,11 +118,11 @@ class SetupSpace:
             part, recognition, setup, blank, low, high, float(z.min()), float(z.max())
         )
 
-    def height(self, z: float) -> float:
-        """Return the setup's height of a height in the recognition's frame."""
-        return float(
-            self.setup.frame.to_local(self.recognition.frame.to_world(np.array([0.0, 0.0, z])))[2]
-        )
+    def height_in(self, feature: Feature, z: float) -> float:
+        """Return the setup's height of one that a feature gives: in the recognition's frame, or along its direction where that is level."""
+        out = level_direction(feature)
+        there = np.array([0.0, 0.0, z]) if out is None else z * out
+        return float(self.setup.frame.to_local(self.recognition.frame.to_world(there))[2])
 
     def centre(self, tag: int) -> Floats:
         """Return a point (3,) inside a face."""
@@ -199,23 +204,44 @@ class SetupSpace:
         return window.minus(self.material_over(z, window))
 
     def silhouette(self) -> Region:
-        """Return the part's outline seen from above, its openings filled: where sides of it lean, their widest sections count."""
-        margin = tolerance.OFF_PLANE
-        leans = any(
-            f.with_role(*LEANING) if f.kind == "profile" else f.attributes.get("outer")
-            for f in self.recognition
-        )
-        low, high = self.bottom + margin, self.top - margin
-        heights = (low, 0.5 * (self.bottom + self.top), high)
-        if leans:
-            heights = tuple(np.linspace(low, high, LEANING_SECTIONS).tolist())
-        return union_all([self.section(z).holes_filled() for z in heights]).holes_filled()
+        """Return the part's outline seen from above, its openings filled: where sides of it lean, their widest sections count; seen along
+        the part, those between all its faces that lie level then."""
+        if not self._silhouette:
+            margin = tolerance.OFF_PLANE
+            leans = any(
+                f.with_role(*LEANING) if f.kind == "profile" else f.attributes.get("outer")
+                for f in self.recognition
+            )
+            low, high = self.bottom + margin, self.top - margin
+            heights: tuple[float, ...] = (low, 0.5 * (self.bottom + self.top), high)
+            if leans:
+                heights = tuple(np.linspace(low, high, LEANING_SECTIONS).tolist())
+            if self.on_edge:
+                heights = (*heights, *self._between_levels())
+            sections = union_all([self.section(z).holes_filled() for z in heights])
+            self._silhouette.append(sections.holes_filled())
+        return self._silhouette[0]
+
+    @property
+    def on_edge(self) -> bool:
+        """Whether the setup looks along the part."""
+        z = self.recognition.frame.local_direction(self.setup.frame.z)
+        return abs(float(z[2])) < np.sin(tolerance.ANGLE)
+
+    def _between_levels(self) -> tuple[float, ...]:
+        """Return the heights in the middle between faces that lie level in the setup, `MOST_SECTIONS` of them at most."""
+        graph, frame = self.part.graph(), self.setup.frame
+        level = np.abs(frame.local_direction(graph.normal)[:, 2]) > np.cos(tolerance.ANGLE)
+        flat = level & (np.array(graph.surface) == "plane")
+        heights = _distinct(frame.to_local(graph.centre[flat])[:, 2].tolist())
+        middles = [0.5 * (a + b) for a, b in pairwise(heights)]
+        return tuple(middles[:: 1 + len(middles) // MOST_SECTIONS])
 
     def top_of(self, feature: Feature) -> float:
         """Return where a feature begins: the part's top, or the floor that it is sunk into."""
         parent = parent_of(feature, self.recognition)
         if parent is not None and parent.kind != "rib" and "top_z" in feature.sizes:
-            return self.height(number(feature, "top_z"))
+            return self.height_in(feature, number(feature, "top_z"))
         return self.top
 
     def floors_of(self, feature: Feature) -> dict[int, float]:
@@ -249,7 +275,11 @@ class SetupSpace:
     def island_top(self, island: Feature) -> float:
         """Return the height of an island's top."""
         tops = island.with_role("top")
-        return float(self.centre(tops[0])[2]) if tops else self.height(number(island, "top_z"))
+        return (
+            float(self.centre(tops[0])[2])
+            if tops
+            else self.height_in(island, number(island, "top_z"))
+        )
 
     def bands_of(self, feature: Feature) -> tuple[Band, ...]:
         """Return the bands of a pocket from the top down; raise `Refused` when no free space is found over a floor."""
@@ -279,7 +309,9 @@ class SetupSpace:
             points = {self.bottom: self._middle_of(feature)}
         top, lowest = self.top_of(feature), min(points)
         rim = (
-            self.height(number(feature, "lowest_rim_z")) if "lowest_rim_z" in feature.sizes else top
+            self.height_in(feature, number(feature, "lowest_rim_z"))
+            if "lowest_rim_z" in feature.sizes
+            else top
         )
         tops = {self.island_top(i): i for i in islands}
         breaks = _distinct([top, *points, *(z for z in tops if lowest < z < top)])

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank, Revolved
 from trunnion.model.feature import Feature, Recognition
@@ -81,9 +83,21 @@ def make_setups(
     return (first,)
 
 
-def turned_over(blank: Blank, settings: SetupSettings) -> Setup:
-    """Return the second setup: the first one turned about its x axis."""
-    return _setup(1, Frame(blank.frame.origin, blank.frame.x, -blank.frame.z), blank, settings)
+def turned_over(blank: Blank, settings: SetupSettings, number: int = 1) -> Setup:
+    """Return a setup, by its number from 0: the first one turned about its x axis."""
+    over = Frame(blank.frame.origin, blank.frame.x, -blank.frame.z)
+    return _setup(number, over, blank, settings)
+
+
+def on_edge(
+    blank: Blank, frame: Frame, direction: Floats, settings: SetupSettings, number: int
+) -> Setup:
+    """Return a setup, by its number from 0, that looks along a level direction (3,) out of a part in a frame: this one turned by a right
+    angle about the level axis across that."""
+    axis = np.cross([0.0, 0.0, 1.0], direction)
+    x = axis * axis[0] + np.cross(axis, [1.0, 0.0, 0.0])
+    seen = Frame(blank.frame.origin, frame.world_direction(x), frame.world_direction(direction))
+    return _setup(number, seen, blank, settings)
 
 
 def held(setup: Setup, fixtures: Sequence[Fixture], blank: Blank) -> Setup:
@@ -101,6 +115,17 @@ def from_below(feature: Feature) -> bool:
         and len(direction) == 3
         and bool(direction[2] <= -np.cos(tolerance.ANGLE) * np.linalg.norm(direction))
     )
+
+
+def level_direction(feature: Feature) -> Floats | None:
+    """Return the unit direction (3,) out of the part, in the recognition's frame, that a feature is reached from at an edge of it; None
+    where it is reached from above or below, or leans."""
+    direction = feature.attributes.get("direction")
+    if not (isinstance(direction, tuple) and len(direction) == 3):
+        return None
+    out = np.array(direction, dtype=np.float64)
+    out /= np.linalg.norm(out)
+    return out if abs(float(out[2])) < math.sin(tolerance.ANGLE) else None
 
 
 def _setup(n: int, frame: Frame, blank: Blank, settings: SetupSettings) -> Setup:

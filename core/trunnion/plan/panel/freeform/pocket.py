@@ -88,7 +88,7 @@ class FreeformPocket:
             heights += [float(z.min()), float(z.max())]
         top = space.top_of(feature)
         lowest = number(feature, "lowest_rim_z")
-        rim = min(space.height(lowest), top) if "lowest_rim_z" in feature.sizes else top
+        rim = min(space.height_in(feature, lowest), top) if "lowest_rim_z" in feature.sizes else top
         sides = tuple(dict.fromkeys(t for f in (feature, *islands) for t in f.with_role(*SIDES)))
         band = space.area_at(feature, rim - tolerance.OFF_PLANE)
         mouth = band.boundary.intersect(band.wanted.offset(AROUND))
