@@ -84,9 +84,9 @@ def _made(
 
 
 def _is_new(view: PanelSide, pocket: Pocket, remaining: Collection[int]) -> bool:
-    """Return whether a pocket is none that another side has: by its floors, without one by any of its sides."""
+    """Return whether a pocket is none that another side has, by its floors, which lie open to this one, without any by one of its sides."""
     if pocket.floors:
-        return all(f in remaining for f in pocket.floors)
+        return all(f in remaining and view.is_clear(f) for f in pocket.floors)
     return any(s in remaining for s in pocket.sides)
 
 

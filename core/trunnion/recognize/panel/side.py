@@ -6,6 +6,7 @@ panel. Heights of features are those of the recognition's frame for the first tw
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -137,9 +138,18 @@ class PanelSide:
 
     def undercut(self, face: int) -> bool:
         """Return whether material stands over the whole of a face: it can't be reached from this side."""
-        spots = [shapely.Point(p[0], p[1]) for p in self.points(face)]
+        return all(self._covered(face))
+
+    def is_clear(self, face: int) -> bool:
+        """Return whether material stands over nothing of a face."""
+        return not any(self._covered(face))
+
+    def _covered(self, face: int) -> Iterator[bool]:
+        """Yield for points in a face whether material stands over them."""
         layers = [s for s in self.slices.layers if s.z > self.graph.box_high[face][2] + SLIVER]
-        return bool(layers) and all(any(s.material.contains(p) for s in layers) for p in spots)
+        for point in self.points(face):
+            spot = shapely.Point(point[0], point[1])
+            yield any(s.material.contains(spot) for s in layers)
 
     def _on_rim(self, face: int) -> bool:
         points = self.points(face)

@@ -82,9 +82,10 @@ def level_view(
     local = graph.in_frame(seen)
     height = float(box(local)[1][2])
     classes = classify(local, above.settings)
-    near = _in_plan(local, classes.rows(*LEVEL), rows)
-    # All that matters begins and ends at a face: no further slices are needed between them.
-    levels = heights((float(local.centre[r][2]) for r in near), 0.0, height, np.inf)
+    near = _in_plan(local, rows)
+    # All that matters begins and ends with a face: no further slices are needed between.
+    ends = (*local.box_low[near, 2].tolist(), *local.box_high[near, 2].tolist())
+    levels = heights(ends, 0.0, height, np.inf)
     return PanelSide(
         graph=local,
         classes=classes,
@@ -129,9 +130,11 @@ def bottom_along(frame: Frame, seen: Frame, direction: Direction) -> float:
     return float(frame.to_local(seen.origin) @ np.array(direction))
 
 
-def _in_plan(graph: FaceGraph, level: Collection[int], rows: Collection[int]) -> tuple[int, ...]:
-    """Return those of some faces whose box in plan meets that of any of others, both rows."""
+def _in_plan(graph: FaceGraph, rows: Collection[int]) -> list[int]:
+    """Return the faces whose box in plan meets that of any of some (rows), themselves among them."""
     own, low, high = np.array(sorted(rows)), graph.box_low[:, :2], graph.box_high[:, :2]
-    return tuple(
-        r for r in level if ((low[own] <= high[r]) & (high[own] >= low[r])).all(axis=1).any()
-    )
+    return [
+        r
+        for r in np.flatnonzero(graph.area > 0.0).tolist()
+        if ((low[own] <= high[r]) & (high[own] >= low[r])).all(axis=1).any()
+    ]
