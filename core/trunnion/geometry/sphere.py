@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.geometry.arrays import Floats, Ints
+from trunnion.tolerance import ANGLE
 
 _GOLDEN = 0.5 * (1.0 + 5.0**0.5)
 
@@ -81,3 +82,11 @@ def angle_between(a: Floats, b: Floats) -> Floats:
     return np.asarray(
         2.0 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1))
     )
+
+
+def on_axis(direction: Floats) -> Floats:
+    """Return a unit direction (3,), just that of a coordinate axis where it is along one within the tolerance of angles."""
+    along = int(np.argmax(np.abs(direction)))
+    if abs(float(direction[along])) > np.cos(ANGLE):
+        return np.asarray(np.sign(direction[along]) * np.eye(3)[along])
+    return direction

@@ -36,7 +36,7 @@ def shared_out(
     states: Sequence[PanelPlanState], features: Sequence[Feature], stages: Sequence[Stage]
 ) -> list[list[Feature]]:
     """Return the features that each setup cuts, in order; the states are told which of them are cut from both sides."""
-    upright = [n for n, s in enumerate(states) if not s.space.on_edge]
+    upright = [n for n, s in enumerate(states) if not s.space.is_on_edge]
     own: list[list[Feature]] = [[] for _ in states]
     rest: list[Feature] = []
     setups = [state.space.setup for state in states]

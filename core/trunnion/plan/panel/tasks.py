@@ -179,7 +179,7 @@ def _face_tasks(
     space = state.space
     height = float(space.blank_high[2]) - space.top
     # Edges are cut with the outline, from above.
-    if height <= tolerance.SEW or space.on_edge:
+    if height <= tolerance.SEW or space.is_on_edge:
         return []
     tops = tuple(
         tag

@@ -216,14 +216,14 @@ class SetupSpace:
             heights: tuple[float, ...] = (low, 0.5 * (self.bottom + self.top), high)
             if leans:
                 heights = tuple(np.linspace(low, high, LEANING_SECTIONS).tolist())
-            if self.on_edge:
+            if self.is_on_edge:
                 heights = (*heights, *self._between_levels())
             sections = union_all([self.section(z).holes_filled() for z in heights])
             self._silhouette.append(sections.holes_filled())
         return self._silhouette[0]
 
     @property
-    def on_edge(self) -> bool:
+    def is_on_edge(self) -> bool:
         """Whether the setup looks along the part."""
         z = self.recognition.frame.local_direction(self.setup.frame.z)
         return abs(float(z[2])) < np.sin(tolerance.ANGLE)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 
 from trunnion.model.operation import Operation
 from trunnion.plan.freeform.keys import EARLIER, UPRIGHT_EARLIER
@@ -24,13 +25,12 @@ def in_order(state: SurfacePlanState, stages: Sequence[Stage]) -> list[Operation
     by_stage = {stage.name: stage for stage in stages}
     row = {o.id: n for n, o in enumerate(state.operations)}
     after = Precedence(len(row))
-    for needed in (True, False):
-        for o in state.operations:
-            for other in state.operations:
-                if needed and _has_to_wait(o, other, by_stage[o.group]):
-                    after.add(row[o.id], row[other.id])
-                elif not needed and _had_better_wait(state, o, other):
-                    after.prefer(row[o.id], row[other.id])
+    for o, other in product(state.operations, repeat=2):
+        if _has_to_wait(o, other, by_stage[o.group]):
+            after.add(row[o.id], row[other.id])
+    for o, other in product(state.operations, repeat=2):
+        if _had_better_wait(state, o, other):
+            after.prefer(row[o.id], row[other.id])
     jobs, done = [], {}
     for n, o in enumerate(state.operations):
         before = sorted(state.operations[k].id for k in after.direct[n])

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.sphere import on_axis
 from trunnion.model.feature import FaceRole, Feature, Size
 from trunnion.recognize.holes.hole import Hole
 from trunnion.recognize.holes.patterns import CIRCLE, HolePattern
 from trunnion.recognize.holes.sizes import hole_sizes
 from trunnion.recognize.holes.sweep import TURN
-from trunnion.tolerance import ANGLE, TANGENT
+from trunnion.tolerance import TANGENT
 from trunnion.units import rounded
 
 HOLE = "hole"
@@ -49,11 +48,7 @@ def hole_feature(hole: Hole, id: str, frame: Frame) -> Feature:
 
 def direction_in(hole: Hole, frame: Frame) -> tuple[float, float, float]:
     """Return the direction out of a hole in a frame; along one of its axes within the tolerance of angles it is just that axis."""
-    direction = frame.local_direction(hole.direction)
-    along = int(np.argmax(np.abs(direction)))
-    if abs(float(direction[along])) > np.cos(ANGLE):
-        direction = np.sign(direction[along]) * np.eye(3)[along]
-    x, y, z = (rounded(v) for v in direction)
+    x, y, z = (rounded(v) for v in on_axis(frame.local_direction(hole.direction)))
     return x, y, z
 
 

@@ -15,6 +15,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Slicer
+from trunnion.recognize.grow import same_surface
 from trunnion.recognize.panel.classes import FaceClass
 from trunnion.recognize.panel.features import FeatureNumbers, SideFeatures, make_features
 from trunnion.recognize.panel.pockets.rules import GraphFeatures, Pocket, pockets_of
@@ -125,11 +126,7 @@ def _meet_inside(graph: FaceGraph, face: int, other: int) -> bool:
 
 
 def _in_one_plane(graph: FaceGraph, face: int, other: int) -> bool:
-    return bool(
-        graph.surface[face] == graph.surface[other] == "plane"
-        and graph.normal[face] @ graph.normal[other] > np.cos(ANGLE)
-        and abs((graph.centre[face] - graph.centre[other]) @ graph.normal[face]) < SLIVER
-    )
+    return graph.surface[face] == "plane" and same_surface(graph, face, other, SLIVER, ANGLE)
 
 
 def _next_direction(

@@ -9,21 +9,19 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
+from trunnion.geometry.sphere import on_axis
 from trunnion.progress import Progress
 from trunnion.recognize.contract import Slicer
 from trunnion.recognize.extent import box
 from trunnion.recognize.panel.classes import FaceClass, FaceClasses, classify
-from trunnion.recognize.panel.frame import flipped
+from trunnion.recognize.panel.frame import DECIMALS, flipped
 from trunnion.recognize.panel.settings import PanelSettings
 from trunnion.recognize.panel.side import BELOW, Direction, PanelSide
 from trunnion.recognize.panel.slicing.slices import cut, heights
 from trunnion.recognize.tunnels import tunnel_walls
-from trunnion.tolerance import ANGLE
 
 LEVEL = (FaceClass.UP, FaceClass.DOWN)
 """Classes of horizontal faces."""
-DECIMALS = 9
-"""Of the numbers of a direction."""
 
 
 def upright_views(
@@ -110,10 +108,8 @@ def _events(graph: FaceGraph, classes: FaceClasses) -> list[float]:
 
 def named_direction(direction: Floats) -> Direction:
     """Return a level direction as it is written: along an axis within the tolerance of angles it is just that axis."""
-    along = int(np.argmax(np.abs(direction)))
-    if abs(float(direction[along])) > np.cos(ANGLE):
-        direction = np.sign(direction[along]) * np.eye(3)[along]
-    x, y, _ = (round(float(v), DECIMALS) + 0.0 for v in direction / np.linalg.norm(direction))
+    exact = on_axis(direction)
+    x, y, _ = (round(float(v), DECIMALS) + 0.0 for v in exact / np.linalg.norm(exact))
     return x, y, 0.0
 
 

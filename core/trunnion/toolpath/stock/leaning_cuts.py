@@ -16,7 +16,7 @@ from trunnion.settings import digest
 from trunnion.toolpath.stock.heightfield import positions_on
 
 STEP = 0.5
-"""mm that no place of the flutes goes between two poses that are looked at: half of what positions lie apart, or less."""
+"""mm that no place of the flutes goes between two poses that are looked at; what they cut only on the way there counts as left."""
 RINGS = 6
 """Heights up the round end of a cutter between which it counts as a cone."""
 ROUND = ("ball", "bull", "flat")
