@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -128,3 +130,52 @@ def test_a_curve_that_is_wanted_everywhere_stays_closed() -> None:
     box = Curve.rectangle(0, 0, 10, 10)
     assert parts_where(box, lambda p: np.ones(len(p))) == [box]
     assert parts_where(box, lambda p: -np.ones(len(p))) == []
+
+
+def beside_what_stands(apart: float, neck: float) -> PathBuilder:
+    """Return a path that ends at the foot of a step that a wider cutter left `apart` mm off the cutter's axis, deeper than its flutes."""
+    wide = PathBuilder(
+        mill(20, flute_length=60.0), cutting(4, 4), PlanningStock.of(BLANK, SETUP), SETUP, 2.0
+    )
+    wide.rapid((-20, 30, 50))
+    for z in (-15.0, -30.0):
+        wide.rapid((-20, 30, z))
+        wide.line((60, 30, z), 500.0)
+        wide.lift(50.0)
+    stock = PlanningStock.of(BLANK, SETUP).after(wide.finished(), wide.tool)
+    slim = replace(mill(6, flute_length=9.0, stickout=80.0), neck_diameter=neck, neck_length=70.0)
+    builder = PathBuilder(slim, cutting(4, 4), stock, SETUP, 2.0)
+    builder.rapid((40, 30, 50))
+    builder.rapid((40, 30, -29))
+    # The wide cutter has cut up to x = 70.
+    builder.line((70.0 - apart, 30, -29), 500.0)
+    return builder
+
+
+@pytest.mark.parametrize(("apart", "fed"), [(2.9, True), (3.0, False), (4.0, False)])
+def test_flutes_are_fed_out_past_what_the_neck_stands_beside(apart: float, fed: bool) -> None:
+    builder = beside_what_stands(apart, neck=5.6)
+    path = builder.finished()
+    assert path.motion[-1] == Motion.RAPID
+    up = path.position[-2] - path.position[-3]
+    if fed:
+        assert (path.motion[-2], path.mark[-2]) == (Motion.LINE, Mark.LEAD)
+        assert up == pytest.approx([0.0, 0.0, 29.0])
+    else:
+        assert up[2] == 0.0
+
+
+def test_what_the_layers_above_have_cut_is_in_nobodys_way() -> None:
+    """Layer by layer down a wall that is deeper than the flutes are long: at every lift all of it is cut."""
+    tool = replace(mill(6, flute_length=9.0, stickout=80.0), neck_diameter=5.6, neck_length=70.0)
+    builder = PathBuilder(tool, cutting(4, 4), PlanningStock.of(BLANK, SETUP), SETUP, 2.0)
+    builder.rapid((-20, 30, 50))
+    for z in range(-4, -40, -4):
+        builder.rapid((-20, 30, z))
+        builder.line((60, 30, z), 500.0)
+        builder.lift(50.0)
+    assert not (builder.finished().mark == Mark.LEAD).any()
+    # But not where the layers above have ended earlier.
+    builder.rapid((-20, 30, -40))
+    builder.line((60.1, 30, -40), 500.0)
+    assert builder.finished().mark[-2] == Mark.LEAD

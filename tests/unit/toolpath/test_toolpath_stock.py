@@ -83,6 +83,24 @@ def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
     assert max(np.abs(fast - plain).max(), np.abs(gone - plainly_gone).max()) < 1e-9
 
 
+@pytest.mark.parametrize("corner", [0.0, 2.0, 6.0])
+def test_compiled_columns_are_cut_as_in_their_plain_form(corner: float) -> None:
+    random = np.random.default_rng(9)
+    starts = random.uniform((-5, -5, -9), (45, 35, 0), (40, 3))
+    ends = np.where(
+        random.random((40, 1)) < 0.3, starts, random.uniform((-5, -5, -9), (45, 35, 0), (40, 3))
+    )
+    points = random.uniform((0, 0), (40, 30), (500, 2))
+    fast, plain = np.zeros(500), np.zeros(500)
+    heightfield.columns_cut(fast, points, starts, ends, 6.0, corner, 4.0)
+    heightfield.columns_cut_reference(plain, points, starts, ends, 6.0, corner, 4.0)
+    assert np.abs(fast - plain).max() < 1e-9
+    # Some are cut, and of some the tops are beyond the flutes of cuts that would take them.
+    deeper = np.zeros(500)
+    heightfield.columns_cut(deeper, points, starts, ends, 6.0, corner, 100.0)
+    assert (fast < 0.0).any() and (deeper < fast).any()
+
+
 def test_the_compiled_greatest_height_is_that_of_its_plain_form() -> None:
     random = np.random.default_rng(8)
     heights = random.random((50, 40))

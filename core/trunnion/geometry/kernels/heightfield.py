@@ -1,5 +1,5 @@
 """Height fields (z-maps) for planning: lowered under a cutter's moves, the greatest height under a
-straight move, and whether a body meets any of them.
+straight move, and whether a body meets any of them; and columns at any points, lowered the same way.
 
 A field is (nx, ny) float64 heights of square cells of side `cell`; cell (i, j) spans x from `x0 + i
 cell` and y from `y0 + j cell`. Both kernels err on the side of material: a cell is lowered only as
@@ -168,6 +168,44 @@ def _cone_meets(
     return False
 
 
+@njit(cache=True, nogil=True)
+def columns_cut(
+    heights: Floats,
+    points: Floats,
+    starts: Floats,
+    ends: Floats,
+    radius: float,
+    corner: float,
+    flutes: float,
+) -> None:
+    """Lower the heights (k,) of columns at points (k, 2) in place under straight moves of the tip from `starts` to `ends` (n, 3), in their
+    order, of a flat, bull or ball end cutter.
+
+    A column gets the height of the cutter's lower side over it, for the move's higher end, where the flutes, of this length from the tip,
+    reach over its top at the lower end; under a higher one they pass.
+    """
+    flat = radius - corner
+    for k in range(len(heights)):
+        top = heights[k]
+        for n in range(len(starts)):
+            z = max(starts[n, 2], ends[n, 2])
+            if top <= z or top > min(starts[n, 2], ends[n, 2]) + flutes:
+                continue
+            px, py = points[k, 0] - starts[n, 0], points[k, 1] - starts[n, 1]
+            dx, dy = ends[n, 0] - starts[n, 0], ends[n, 1] - starts[n, 1]
+            square = dx * dx + dy * dy
+            t = min(max((px * dx + py * dy) / square, 0.0), 1.0) if square > 0.0 else 0.0
+            away = math.hypot(px - t * dx, py - t * dy)
+            if away > radius:
+                continue
+            if away > flat:
+                # Quarter circle of the corner: corner - sqrt(corner^2 - inner^2).
+                inner = away - flat
+                z += corner - math.sqrt(max(corner * corner - inner * inner, 0.0))
+            top = min(top, z)
+        heights[k] = top
+
+
 def zmap_cut_reference(
     heights: Floats,
     x0: float,
@@ -222,6 +260,24 @@ def zmap_meets_reference(
                 if far >= near
                 else ((away < near) & (above > low)).any()
             )
+
+
+def columns_cut_reference(
+    heights: Floats,
+    points: Floats,
+    starts: Floats,
+    ends: Floats,
+    radius: float,
+    corner: float,
+    flutes: float,
+) -> None:
+    """Plain numpy form of `columns_cut`: all columns for every move."""
+    for a, b in zip(starts, ends, strict=True):
+        away = _distance(points, a[:2], b[:2])
+        inner = np.maximum(away - (radius - corner), 0.0)
+        lift = max(a[2], b[2]) + corner - np.sqrt(np.maximum(corner**2 - inner**2, 0.0))
+        reached = (away <= radius) & (heights <= min(a[2], b[2]) + flutes)
+        heights[...] = np.where(reached, np.minimum(heights, lift), heights)
 
 
 def _centres(heights: Floats, x0: float, y0: float, cell: float) -> Floats:

@@ -21,6 +21,7 @@ from trunnion.model.tool import Tool
 from trunnion.toolpath.motion.feed import arc_feed
 from trunnion.toolpath.motion.fixture_links import FixtureSurface
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.over_flutes import StockOverFlutes
 
 WIDEST_ARC = math.radians(200.0)
 NOWHERE = (math.nan, math.nan, math.nan)
@@ -39,6 +40,7 @@ class PathBuilder:
         self.fixtures = FixtureSurface.of(setup)
         self.here: Floats | None = None
         self._stock = stock
+        self._over_flutes = StockOverFlutes(stock, tool)
         self._known = 0
         self._position: list[tuple[float, float, float]] = []
         self._motion: list[Motion] = []
@@ -83,6 +85,15 @@ class PathBuilder:
     def rapid(self, point: ArrayLike) -> None:
         """Move at rapid to a point (3,)."""
         self._add(Motion.RAPID, _three(point), NOWHERE, 0.0, Mark.RETRACT)
+
+    def lift(self, z: float) -> None:
+        """Go straight up to a height: at feed where the flutes scrape stock that the tool stands beside with its neck, else at rapid."""
+        here = self._at()
+        if self._over_flutes.may_be_there(here):
+            top = min(self._over_flutes.top(here, self._made(0)), z)
+            if top > here[2]:
+                self.line((here[0], here[1], top), self.data.feed, Mark.LEAD)
+        self.rapid((here[0], here[1], z))
 
     def line(self, point: ArrayLike, feed: float, mark: Mark = Mark.CUT) -> None:
         """Feed straight to a point (3,)."""
@@ -155,7 +166,7 @@ class PathBuilder:
         """Return the path, its last block a retract to the setup's clearance height."""
         if self.here is None:
             return EMPTY
-        self.rapid((self.here[0], self.here[1], self.clearance))
+        self.lift(self.clearance)
         return self._made(0)
 
     def _at(self) -> Floats:

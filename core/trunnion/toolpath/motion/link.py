@@ -128,7 +128,7 @@ def _cross(
     assert here is not None  # a way across begins where the tool is
     across = max(here[2] + _lift(builder, here, position), z)
     if across > here[2] + tolerance.SHORT_MOVE:
-        builder.rapid((here[0], here[1], across))
+        builder.lift(across)
     builder.rapid((*position, across))
 
 

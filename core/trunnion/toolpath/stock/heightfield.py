@@ -249,6 +249,15 @@ class PlanningStock:
             )
         )
 
+    def heights_at(self, points: Floats) -> Floats:
+        """Return the heights (k,) of the cells that points (k, 2) lie in, -inf beside the field."""
+        self._look(points.min(axis=0), points.max(axis=0))
+        cell = np.floor((points - self.corner) / self.cell).astype(np.int64)
+        inside = ((cell >= 0) & (cell < self.field.shape)).all(axis=1)
+        heights = np.full(len(points), -np.inf)
+        heights[inside] = self.field[tuple(cell[inside].T)]
+        return heights
+
     def is_clear(self, z: float, area: Region) -> bool:
         """Return whether no cell in an area is higher than `z`: none with its middle in it, or where it is too narrow to hold a middle,
         none that it touches. Beside the field nothing stands."""

@@ -1,0 +1,93 @@
+"""What a cutter would scrape on its way out: stock beside its neck that the wider flutes below do not pass by.
+
+A cutter may have come there from the side. The field of heights can't tell: beside walls it is too high, and what flutes went by underneath
+counts as gone. So points on the flutes' circle are asked, which lie in no cell, and each cut takes off no more than its flutes reach over.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import reduce
+
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.geometry.arrays import Floats
+from trunnion.geometry.kernels import heightfield
+from trunnion.model.motion.toolpath import Toolpath
+from trunnion.model.tool import Tool
+from trunnion.toolpath.stock.heightfield import ARC_CHORD, PlanningStock, cutting_chords
+
+SPACING = 0.1
+"""mm between points on the circle."""
+INSIDE = 2.0 * ARC_CHORD + tolerance.RAPID_DEPTH
+"""mm that the circle is smaller than the flutes: arcs are cut as chords, by a cutter that is smaller by as much as they are off."""
+
+
+@dataclass(slots=True, eq=False)
+class StockOverFlutes:
+    """What stands over the flutes of a tool within their width, in the stock that its path is planned on."""
+
+    stock: PlanningStock
+    tool: Tool
+    _earlier: list[_Cuts] | None = field(default=None, init=False)
+
+    def may_be_there(self, tip: Floats) -> bool:
+        """Return whether anything may stand over the flutes of the tool at a tip (3,), whatever its own path has cut."""
+        return self.stock.height(tip, tip, self.tool.radius) > tip[2] + self.tool.flute_length
+
+    def top(self, tip: Floats, path: Toolpath) -> float:
+        """Return the height (mm) of what stands over the flutes of the tool at a tip (3,) after its own path; -inf where nothing does."""
+        radius = self.tool.radius - INSIDE
+        if radius <= 0.0:
+            return -math.inf
+        count = math.ceil(2.0 * math.pi * radius / SPACING)
+        angle = 2.0 * math.pi * np.arange(count) / count
+        points = tip[:2] + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+        uncut = self.stock.heights_at(points)
+        own = _Cuts.of(path, self.tool, self.stock.widths)
+        over = tip[2] + self.tool.flute_length
+        # Earlier cuts only lower what the own ones begin with: where these are enough, nobody asks for them.
+        if (own.lowered(uncut, points) <= over).all():
+            return -math.inf
+        if self._earlier is None:
+            self._earlier = [_Cuts.of(p, t, self.stock.widths) for p, t in self.stock.exact_cuts]
+        heights = reduce(
+            lambda left, cuts: cuts.lowered(left, points), [*self._earlier, own], uncut
+        )
+        return float(heights[heights > over].max(initial=-math.inf))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Cuts:
+    """Straight cuts of a tool from `starts` to `ends` (n, 3), in their order."""
+
+    starts: Floats
+    ends: Floats
+    radius: float
+    corner_radius: float
+    flute_length: float
+
+    @staticmethod
+    def of(path: Toolpath, tool: Tool, widths: float) -> _Cuts:
+        starts, ends, _, error = cutting_chords(path, tool)
+        radius = widths * (tool.radius - error)
+        return _Cuts(starts, ends, radius, min(tool.corner_radius, radius), tool.flute_length)
+
+    def lowered(self, heights: Floats, points: Floats) -> Floats:
+        """Return the heights (k,) that the cuts leave of columns at points (k, 2)."""
+        low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
+        a, b = self.starts[:, :2], self.ends[:, :2]
+        near = ((np.maximum(a, b) > low) & (np.minimum(a, b) < high)).all(axis=1)
+        left = heights.copy()
+        heightfield.columns_cut(
+            left,
+            points,
+            self.starts[near],
+            self.ends[near],
+            self.radius,
+            self.corner_radius,
+            self.flute_length,
+        )
+        return left
