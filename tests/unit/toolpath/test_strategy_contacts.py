@@ -29,6 +29,7 @@ from trunnion.model.setup import Setup
 from trunnion.settings import choose
 from trunnion.shop import load_shop
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
+from trunnion.toolpath.contact_passes.stepover import fronts
 from trunnion.toolpath.contact_passes.stepover.fronts import AIM, FIRST, scallop_passes
 from trunnion.toolpath.contact_passes.stepover.metric import spread, stepover_measure
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -122,6 +123,20 @@ def test_no_place_is_much_farther_than_half_a_stepover_from_a_pass(name: str) ->
     ways = scallop_passes(drive, BALL, 0.0005)
     away = stepovers_away(drive, BALL, ways)
     assert np.percentile(away, 99.5) < 0.515 and away.max() < 0.53
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_an_area_too_large_for_one_field_is_cut_in_pieces_that_leave_nothing_between_them(
+    name: str, monkeypatch
+) -> None:
+    drive = drive_of(FORMS[name])
+    whole = length(scallop_passes(drive, BALL, 0.0005))
+    monkeypatch.setattr(fronts, "LARGEST", 40.0)
+    ways = scallop_passes(drive, BALL, 0.0005)
+    assert 1.01 * whole < length(ways) < 1.6 * whole
+    away = stepovers_away(drive, BALL, ways)
+    # No ridge is higher than wanted by more than a tenth.
+    assert np.percentile(away, 99.5) < 0.515 and away.max() < 0.5 * math.sqrt(1.1 / AIM)
 
 
 @pytest.mark.parametrize("extra", [-0.03, 0.0, 0.02, 0.04, 0.1])

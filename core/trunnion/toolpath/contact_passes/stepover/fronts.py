@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.sheet.contours import SheetLine, whole_levels
 from trunnion.geometry.sheet.fields import Metric, distances
+from trunnion.geometry.sheet.pieces import in_pieces
 from trunnion.geometry.sheet.refine_sheet import split_finely
 from trunnion.geometry.sheet.ridges import RidgedSheet, opened, ridged
 from trunnion.geometry.sheet.sheet import Measure, Sheet, sheet_of
@@ -33,6 +34,8 @@ FINENESS = 0.5
 AIM = 0.93
 """Of the scallop height: what passes are laid for. Distances over triangles are a few hundredths off, and level lines are farther apart
 where they bend; so the highest ridge stays within a tenth of what is wanted."""
+LARGEST = 80_000.0
+"""Square stepovers of a piece at most: a million and a half triangles."""
 FIRST = 0.3
 """Stepovers from the rim to the first pass: less than half a stepover from a square corner, which triangles round a little."""
 FARTHEST = 0.48
@@ -54,10 +57,14 @@ def scallop_passes(
     drive: SurfaceDrive, tool: Tool, chord: float, progress: Progress = NO_PROGRESS
 ) -> list[Contacts]:
     """Return the passes of contacts from the rim of the drive's faces inwards, what is inside on their left, each connected part and each
-    branch of it by itself; then those along ridges. Raises `Refused` for a flat end and for too large an area."""
+    branch of it by itself, a part that is too large for one field in pieces; then those along ridges. Raises `Refused` for a flat end."""
     measure = stepover_measure(tool, AIM * drive.height)
     longest = stepover_on_plane(tool.corner_radius, drive.height)
-    parts = sheet_of(drive.skin, drive.faces).components()
+    parts = [
+        piece
+        for part in sheet_of(drive.skin, drive.faces).components()
+        for piece in in_pieces(part, lambda p: metric_of(p, measure).area(), LARGEST)
+    ]
     made = []
     for k, part in enumerate(parts):
         progress.at(k / len(parts), "Measuring distances in stepovers")
