@@ -186,6 +186,9 @@ def parallel(
         settings.chord,
         progress.part(0.6, 0.7),
     )
+    passes, free, blocked = without_stock_contact(
+        passes, drive, tool, stock, planes.widest, progress
+    )
     parameters = LinkParameters(
         stepover=planes.widest,
         safety=settings.safety,
@@ -193,8 +196,8 @@ def parallel(
         order="nearest",
         reversing=settings.way == "both",
         chord=settings.chord,
+        free_tips=free,
     )
-    passes, blocked = without_stock_contact(passes, drive, tool, stock, planes.widest, progress)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.7, 1.0)),
         findings=(*found, *lost, *blocked),

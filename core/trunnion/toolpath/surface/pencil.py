@@ -150,6 +150,7 @@ def pencil(
         )
     ]
     passes = _passes(lines, ground, settings.chord, progress.part(0.5, 0.8))
+    passes, free, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     parameters = LinkParameters(
         stepover=stepover,
         safety=settings.safety,
@@ -157,8 +158,8 @@ def pencil(
         order="nearest",
         reversing=True,
         chord=settings.chord,
+        free_tips=free,
     )
-    passes, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
         findings=blocked,

@@ -182,6 +182,10 @@ def waterline(
         )
         return Planned(findings=(*found, nothing))
     step = max(float(np.diff(wall.levels).max(initial=tool.radius)) for wall in walls)
+    if settings.trim:
+        steep = _samples(drive, math.radians(settings.shallowest))
+        passes = trimmed_to_stock(passes, steep, drive, tool, stock, data.feed, progress)
+    passes, free, blocked = without_stock_contact(passes, drive, tool, stock, step, progress)
     parameters = LinkParameters(
         stepover=max(step, tool.radius),
         safety=settings.safety,
@@ -189,11 +193,8 @@ def waterline(
         chord=settings.chord,
         arcs=True,
         overlap=settings.overlap,
+        free_tips=free,
     )
-    if settings.trim:
-        steep = _samples(drive, math.radians(settings.shallowest))
-        passes = trimmed_to_stock(passes, steep, drive, tool, stock, data.feed, progress)
-    passes, blocked = without_stock_contact(passes, drive, tool, stock, step, progress)
     return Planned(
         path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
         findings=(*found, *blocked),

@@ -12,6 +12,8 @@ from surface_drives import DATA, driven, grid, joined, roughed
 from trunnion.geometry.kernels.heightfield import zmap_meets, zmap_meets_reference
 from trunnion.model.motion.toolpath import Mark
 from trunnion.progress import NO_PROGRESS
+from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
@@ -58,7 +60,9 @@ def along(y, z=0.0, start=2.0, end=28.0):
 @pytest.mark.parametrize(("wide", "clear"), [(30.0, True), (1.5, False)])
 def test_a_pass_in_a_trench_is_cut_where_neck_and_shank_have_space(wide, clear):
     drive, _, stock = trench(wide)
-    kept, findings = without_stock_contact([along(15.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS)
+    kept, _, findings = without_stock_contact(
+        [along(15.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS
+    )
     assert bool(kept) is clear and bool(findings) is not clear
     if findings:
         assert findings[0].code == "surface.in-stock" and "13.0 mm2" in findings[0].text
@@ -66,7 +70,7 @@ def test_a_pass_in_a_trench_is_cut_where_neck_and_shank_have_space(wide, clear):
 
 def test_stock_no_higher_than_the_flutes_are_long_is_in_no_neck_s_way():
     drive, _, stock = trench(1.5, deep=2.9)
-    kept, findings = without_stock_contact([along(5.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS)
+    kept, _, findings = without_stock_contact([along(5.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS)
     assert len(kept) == 1 and not findings
 
 
@@ -75,7 +79,7 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
     heights = stock.heights.copy()
     x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
     heights[x > 20.0] = 20.0
-    kept, findings = without_stock_contact(
+    kept, _, findings = without_stock_contact(
         [along(15.0)], drive, SLENDER, replace(stock, field=heights), 0.5, NO_PROGRESS
     )
     assert not kept and findings
@@ -84,7 +88,7 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
         axis=np.tile(UPRIGHT, (53, 1)),
         normal=np.tile(UPRIGHT, (53, 1)),
     )
-    (kept,), findings = without_stock_contact(
+    (kept,), _, findings = without_stock_contact(
         [split], drive, SLENDER, replace(stock, field=heights), 0.5, NO_PROGRESS
     )
     # Its shank has a radius of 2 mm, the stock begins at x = 20.
@@ -94,9 +98,9 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
 def test_passes_that_go_down_step_by_step_make_space_for_the_neck_of_those_below():
     drive, _, stock = trench(1.5, deep=9.0)
     stairs = [along(5.0, z) for z in np.arange(7.0, -0.1, -1.0)]
-    kept, findings = without_stock_contact(stairs, drive, SLENDER, stock, 0.5, NO_PROGRESS)
+    kept, _, findings = without_stock_contact(stairs, drive, SLENDER, stock, 0.5, NO_PROGRESS)
     assert len(kept) == len(stairs) and not findings
-    kept, findings = without_stock_contact(stairs[-1:], drive, SLENDER, stock, 0.5, NO_PROGRESS)
+    kept, _, findings = without_stock_contact(stairs[-1:], drive, SLENDER, stock, 0.5, NO_PROGRESS)
     assert not kept and findings
 
 
@@ -104,7 +108,7 @@ def test_where_the_shank_is_wider_than_the_cutter_steps_make_no_space_for_it():
     drive, _, stock = trench(1.5, deep=20.0)
     stairs = [along(5.0, z) for z in np.arange(18.0, -0.1, -1.0)]
     thick = replace(SLENDER, shank_diameter=6.0)
-    kept, findings = without_stock_contact(stairs, drive, thick, stock, 0.5, NO_PROGRESS)
+    kept, _, findings = without_stock_contact(stairs, drive, thick, stock, 0.5, NO_PROGRESS)
     assert kept and 9.0 <= min(p.tip[:, 2].min() for p in kept) <= 10.0 and findings
 
 
@@ -133,7 +137,7 @@ def test_what_is_left_on_a_wall_is_told_from_the_rim_that_the_field_keeps_there(
     stock = stock.after(rows_of(0.3, 18.0 + thick), bull(6.0, 0.0)(flute=20.0))
     rim = int((15.0 + thick - stock.corner[1]) // stock.cell)
     assert (stock.heights[:, rim] > 5.0).any() or thick == 0.0
-    kept, findings = without_stock_contact(
+    kept, _, findings = without_stock_contact(
         [along(15.0 + off)], drive, SLENDER, stock, 0.5, NO_PROGRESS
     )
     assert bool(kept) is clear and bool(findings) is not clear
@@ -168,3 +172,33 @@ def test_a_strategy_leaves_what_lies_under_stock_and_says_so(strategy, chosen, i
     codes = [f.code for f in made.findings]
     assert ("surface.in-stock" in codes) is not is_roughed
     assert bool((made.path.mark == Mark.CUT).any()) is is_roughed
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_leads_do_not_go_on_into_what_the_pass_ends_before(backwards):
+    """Stock stands from x = 20 on, higher than the flutes are long; the pass goes up to it, or begins there."""
+    drive, setup, stock = trench(30.0)
+    heights = stock.heights.copy()
+    x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
+    heights[x > 20.0] = 20.0
+    stock = replace(stock, field=heights)
+    slim = replace(SLENDER, shank_diameter=1.9)
+    run = np.linspace(2.0, 28.0, 105)[:: -1 if backwards else 1]
+    whole = Pass(
+        tip=np.column_stack([run, np.full(105, 15.0), np.zeros(105)]),
+        axis=np.tile(UPRIGHT, (105, 1)),
+        normal=np.tile(UPRIGHT, (105, 1)),
+    )
+    kept, free, _ = without_stock_contact([whole], drive, slim, stock, 0.5, NO_PROGRESS)
+    near = kept[0].tip[0 if backwards else -1, 0]
+    assert 18.0 < near <= 19.3
+    parameters = LinkParameters(stepover=0.5, lead_radius=1.0)
+    blind, seeing = (
+        linked(kept, drive, slim, DATA, stock, setup, replace(parameters, free_tips=f))
+        for f in (None, free)
+    )
+    low = [p.position[p.position[:, 2] < 15.0, 0] for p in (blind, seeing)]
+    assert low[0].max() > near + 0.9
+    assert low[1].max() < near + 0.05
+    # At the other end nothing is in the way of its lead.
+    assert seeing.position[:, 0].min() == pytest.approx(1.0)

@@ -158,8 +158,8 @@ class _PassEnds:
 
     def radii(self, parameters: LinkParameters) -> Floats:
         """Return the radii (m,) in mm of the leads: where the tool would touch something on one it is shorter, or there is none."""
-        radius, query = np.full(len(self.tip), parameters.lead_radius), parameters.query
-        if query is None:
+        radius = np.full(len(self.tip), parameters.lead_radius)
+        if parameters.query is None and parameters.free_tips is None:
             return radius
         touching = np.arange(len(radius))
         for share in SHORTER:
@@ -167,14 +167,23 @@ class _PassEnds:
             arcs = self.arcs(radius)[touching, stride - 1 :: stride]
             start = np.concatenate([self.tip[touching, None], arcs[:, :-1]], axis=1)
             axis = np.repeat(self.axis[touching], arcs.shape[1], axis=0)
-            is_clear = query(
-                arcs.reshape(-1, 3), axis, start_tip=start.reshape(-1, 3), start_axis=axis
-            )
+            is_clear = _free_moves(start.reshape(-1, 3), arcs.reshape(-1, 3), axis, parameters)
             touching = touching[~is_clear.reshape(arcs.shape[:2]).all(axis=1)]
             if not len(touching):
                 break
             radius[touching] = share * parameters.lead_radius
         return radius
+
+
+def _free_moves(start: Floats, end: Floats, axis: Floats, parameters: LinkParameters) -> Bools:
+    """Return which straight moves (k,) with axes (k, 3) meet nothing."""
+    clear = np.ones(len(end), dtype=bool)
+    if parameters.query is not None:
+        clear &= parameters.query(end, axis, start_tip=start, start_axis=axis)
+    if parameters.free_tips is not None:
+        rows = np.flatnonzero(np.abs(axis - UPRIGHT).max(axis=1) < SAME)
+        clear[rows] &= parameters.free_tips(end[rows])
+    return clear
 
 
 def _off(tip: Floats, axis: Floats) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -16,6 +17,9 @@ NEAR = 3.0
 """Stepovers: a pass that begins no farther from the end of the one before is reached without lifting."""
 SAME = 1e-9
 """Two directions that differ by less are one."""
+
+FreeTips = Callable[[Floats], Bools]
+"""Says at which tips (k, 3) an upright tool meets no stock above its flutes."""
 
 
 class LinkClearance(Protocol):
@@ -37,7 +41,7 @@ class LinkParameters:
     "nearest" or "shorter", which is nearest where that takes the tool less far through the air; `reversing` allows passes to be cut the
     other way where that is nearer; `chord` is the chord error of links, mm. With `arcs` a near pass is reached by the leads of both, and
     above the stock where these have no space: for walls, beside which a cutter that follows the surface would be lifted to their tops.
-    Closed passes go on over their start by the `overlap` in mm.
+    Closed passes go on over their start by the `overlap` in mm. Of upright tools `free_tips` says where leads may go (None: anywhere).
 
     Of leaning tools: `query` says which straight moves are clear, `link_clearance` which rapids are (None: any along the axis, none
     across); on a mm over the surface the axis turns by no more than `turn` rad.
@@ -51,6 +55,7 @@ class LinkParameters:
     chord: float = 2e-3
     arcs: bool = False
     overlap: float = 0.0
+    free_tips: FreeTips | None = None
     turn: float = math.inf
     query: ClearanceQuery | None = None
     link_clearance: LinkClearance | None = None

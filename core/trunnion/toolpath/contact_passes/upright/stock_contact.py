@@ -22,6 +22,7 @@ from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.choices import IN_STOCK
+from trunnion.toolpath.contact_passes.linking.parameters import FreeTips
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -29,6 +30,8 @@ FINE = 0.25
 """mm: the side of the finer cells."""
 RIM = 1.0
 """Of a cell: how far beside a wall its middle may be that counts as the wall's."""
+LEAD = 2.0
+"""mm past a pass's ends that a tool may be asked for: leads are no longer."""
 SHORTEST = 0.05
 """mm: a shorter piece of a pass between two interruptions is left out."""
 SMALLEST_LEFTOVER = 0.5
@@ -42,20 +45,20 @@ def without_stock_contact(
     stock: PlanningStock,
     stepover: float,
     progress: Progress,
-) -> tuple[list[Pass], tuple[Finding, ...]]:
-    """Return what of passes in their order, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes, and a
-    finding of the area that is left.
+) -> tuple[list[Pass], FreeTips | None, tuple[Finding, ...]]:
+    """Return what of passes in their order, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes; at which
+    tips near their ends it still doesn't when all of them are cut, None for anywhere; and a finding of the area that is left.
 
     What passes before have cut is gone. What stands no higher over the part about it than the flutes are long is theirs to cut.
     """
     rows = np.array(tool.profile()).reshape(-1, 4)
     if not len(passes) or not len(rows) or not all(p.upright for p in passes):
-        return list(passes), ()
+        return list(passes), None, ()
     tips, owner, segment = _spaced(passes, stock.cell)
     low, high = _around(stock, tips, rows, tool)
     doubtful = ~_is_free(stock.cropped(low, high), tips, rows)
     if not doubtful.any():
-        return list(passes), ()
+        return list(passes), None, ()
     fine = progress.aside(
         lambda own: stock.centred_finely(low, high, FINE, own), "Cutting the stock in finer cells"
     )
@@ -64,6 +67,14 @@ def without_stock_contact(
     progress.aside(partial(_take_part_off, fine, drive, tips[doubtful], tool))
     # Passes only lower it.
     top = float(field.max())
+
+    def is_free(at: Floats) -> Bools:
+        found = np.zeros(len(at), dtype=bool)
+        heightfield.zmap_meets(
+            field, top, *fine.corner, fine.cell, np.ascontiguousarray(at), body, found
+        )
+        return ~found
+
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
     kept, left, over = list[Pass](), 0.0, 0.0
     for k, one in enumerate(passes):
@@ -72,17 +83,7 @@ def without_stock_contact(
         met = np.zeros(starts[k + 1] - starts[k], dtype=bool)
         some = np.flatnonzero(doubtful[of])
         if len(some):
-            found = np.zeros(len(some), dtype=bool)
-            heightfield.zmap_meets(
-                field,
-                top,
-                *fine.corner,
-                fine.cell,
-                np.ascontiguousarray(tips[of][some]),
-                body,
-                found,
-            )
-            met[some] = found
+            met[some] = ~is_free(tips[of][some])
         pieces = [one]
         if met.any():
             pieces = _pieces(one, segment[of][met])
@@ -91,7 +92,7 @@ def without_stock_contact(
         for piece in pieces:
             _lower(fine, piece, tool)
         kept += pieces
-    return kept, _findings(left * stepover, over, drive, tool)
+    return kept, is_free, _findings(left * stepover, over, drive, tool)
 
 
 def _widened(rows: Floats, radius: float, more: float) -> Floats:
@@ -153,7 +154,8 @@ def _take_part_off(
     near = np.zeros(field.shape, dtype=bool)
     cell = np.floor((tips[:, :2] - stock.corner) / stock.cell).astype(np.int64)
     near[tuple(np.clip(cell, 0, np.array(field.shape) - 1).T)] = True
-    near = maximum_filter(near, 2 * (math.ceil(widest / stock.cell) + 1) + 1, mode="nearest")
+    reach = widest + LEAD
+    near = maximum_filter(near, 2 * (math.ceil(reach / stock.cell) + 1) + 1, mode="nearest")
     rows = np.argwhere(near & (field > float(tips[:, 2].min()) + tool.flute_length))
     if not len(rows):
         return

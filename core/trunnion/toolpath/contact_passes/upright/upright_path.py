@@ -46,13 +46,14 @@ def upright_path(
 ) -> Planned:
     """Return the motions over `passes`, those that were `made` in the order that a strategy wants, and findings on what these leave."""
     stepover = stepover_on_plane(tool.corner_radius, drive.height)
+    clear, free, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     parameters = LinkParameters(
         stepover=stepover,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
         order=order,
         reversing=reversing,
+        free_tips=free,
     )
-    clear, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     path = linked(clear, drive, tool, data, stock, setup, parameters, progress)
     return Planned(path=path, findings=(*made.remaining_findings(drive, tool, stepover), *blocked))
