@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats, floats
+from trunnion.geometry.arrays import Bools, Floats, Ints, floats
 
 UPRIGHT = np.array([0.0, 0.0, 1.0])
 
@@ -51,3 +51,15 @@ class Pass:
     def of(self, rows: Bools | slice) -> Pass:
         """Return a part of the pass; it is not closed."""
         return Pass(tip=self.tip[rows], axis=self.axis[rows], normal=self.normal[rows])
+
+
+def spaced(tip: Floats, step: float) -> tuple[Floats, Ints]:
+    """Return positions (n, 3) along straight moves from tip to tip (k, 3), no farther apart than a step (mm), and the move (n,) that each
+    is on."""
+    moved = np.linalg.norm(np.diff(tip, axis=0), axis=1)
+    count = np.maximum(np.ceil(moved / step), 1.0).astype(np.int64)
+    row = np.repeat(np.arange(len(count)), count)
+    number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    share = (number / count[row])[:, None]
+    positions = np.vstack([tip[row] + share * (tip[row + 1] - tip[row]), tip[-1:]])
+    return positions, np.append(row, len(count) - 1)

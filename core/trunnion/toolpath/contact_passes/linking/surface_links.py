@@ -19,8 +19,11 @@ from trunnion.toolpath.contact_passes.linking.parameters import (
     LinkParameters,
     is_upright,
 )
-from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contact_passes.passes import Pass, spaced
 from trunnion.toolpath.contact_passes.upright.tracing import follow, thinned
+
+APART = 0.25
+"""mm between positions of a link at which stock is asked for."""
 
 
 def near_passes(passes: Sequence[Pass], parameters: LinkParameters) -> Bools:
@@ -103,6 +106,13 @@ def is_over(
         ],
         dtype=bool,
     )
+
+
+def is_clear_of_stock(tips: Floats, axis: Floats, parameters: LinkParameters) -> bool:
+    """Return whether a tool with an axis (3,), where it is upright, meets no stock above its flutes along tips (k, 3)."""
+    if parameters.free_tips is None or not is_upright(axis):
+        return True
+    return bool(parameters.free_tips(spaced(tips, APART)[0]).all())
 
 
 def _on_chord(points: Floats, chord: Floats) -> Floats:

@@ -23,13 +23,15 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.choices import IN_STOCK
 from trunnion.toolpath.contact_passes.linking.parameters import FreeTips
-from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contact_passes.passes import Pass, spaced
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 FINE = 0.25
 """mm: the side of the finer cells."""
 RIM = 1.0
 """Of a cell: how far beside a wall its middle may be that counts as the wall's."""
+THIN = 0.5
+"""mm over the part about a cell up to which its height is the part's, or of what lies on it everywhere."""
 LEAD = 2.0
 """mm past a pass's ends that a tool may be asked for: leads are no longer."""
 SHORTEST = 0.05
@@ -49,7 +51,7 @@ def without_stock_contact(
     """Return what of passes in their order, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes; at which
     tips near their ends it still doesn't when all of them are cut, None for anywhere; and a finding of the area that is left.
 
-    What passes before have cut is gone. What stands no higher over the part about it than the flutes are long is theirs to cut.
+    What passes before have cut is gone, and what lies thinly on the part.
     """
     rows = np.array(tool.profile()).reshape(-1, 4)
     if not len(passes) or not len(rows) or not all(p.upright for p in passes):
@@ -118,16 +120,10 @@ def _spaced(passes: Sequence[Pass], step: float) -> tuple[Floats, Ints, Ints]:
     move of that."""
     tips, owner, segment = list[Floats](), list[Ints](), list[Ints]()
     for k, one in enumerate(passes):
-        moved = np.linalg.norm(np.diff(one.tip, axis=0), axis=1)
-        count = np.maximum(np.ceil(moved / step), 1.0).astype(np.int64)
-        row = np.repeat(np.arange(len(count)), count)
-        number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-        share = (number / count[row])[:, None]
-        tips.append(
-            np.vstack([one.tip[row] + share * (one.tip[row + 1] - one.tip[row]), one.tip[-1:]])
-        )
-        segment.append(np.append(row, len(count) - 1))
-        owner.append(np.full(len(row) + 1, k))
+        positions, move = spaced(one.tip, step)
+        tips.append(positions)
+        segment.append(move)
+        owner.append(np.full(len(positions), k))
     return np.concatenate(tips), np.concatenate(owner), np.concatenate(segment)
 
 
@@ -148,7 +144,7 @@ def _take_part_off(
     stock: PlanningStock, drive: SurfaceDrive, tips: Floats, tool: Tool, progress: Progress
 ) -> None:
     """Take off a working copy, where the body of a tool at tips (k, 3) may come, heights that are the part's, or of what lies on it no
-    thicker than the flutes are long."""
+    thicker than operations leave."""
     field = stock.field
     widest = max(max(r0, r1) for _, r0, _, r1 in tool.profile())
     near = np.zeros(field.shape, dtype=bool)
@@ -162,7 +158,7 @@ def _take_part_off(
     centres = stock.corner + (rows + 0.5) * stock.cell
     lowest = float(drive.low[2]) - tool.flute_length
     part = drive.skin.drop.drop(centres, level_disc(RIM * stock.cell), lowest, progress)
-    some = tuple(rows[field[tuple(rows.T)] <= part + tool.flute_length].T)
+    some = tuple(rows[field[tuple(rows.T)] <= part + THIN].T)
     field[some] = -np.inf
 
 
