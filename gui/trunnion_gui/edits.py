@@ -8,12 +8,12 @@ from typing import Any
 
 from trunnion.findings import Refused
 from trunnion.model.feature import Recognition
-from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session
 from trunnion.plan.manual.operation_copy import with_copy as copied
 from trunnion.plan.manual.operation_copy import with_copy_on as copied_on
 from trunnion.plan.manual.operation_order import with_operation_before as moved_before
+from trunnion.plan.manual.operation_state import with_own_values
 from trunnion.plan.manual.operation_state import with_suppressed as suppressed_in
 from trunnion.settings import Value
 
@@ -175,12 +175,7 @@ def with_suppressed(id: str, suppressed: bool) -> Edit:
 
 def with_operation_choice(id: str, key: str, value: Value) -> Edit:
     """Return the edit that chooses a strategy's setting for one operation only."""
-
-    def change(o: Operation) -> Operation:
-        own = tuple(dict.fromkeys((*o.own_choices, key)))
-        return replace(o, choices={**o.choices, key: value}, own_choices=own, by_hand=True)
-
-    return _with_operation(id, change)
+    return _with_process(lambda tree: with_own_values(tree, id, {key: value}))
 
 
 def with_operation_before(id: str, before: str | None) -> Edit:
@@ -204,15 +199,6 @@ def with_copy_on(id: str, feature: str) -> Edit:
         return replace(session, process=made)
 
     return edit
-
-
-def _with_operation(id: str, change: Callable[[Operation], Operation]) -> Edit:
-    def changed(tree: ProcessTree) -> ProcessTree:
-        before = tree.operation(id)
-        after = change(before)
-        return tree if after == before else tree.with_operation(after)
-
-    return _with_process(changed)
 
 
 def _with_process(change: Callable[[ProcessTree], ProcessTree]) -> Edit:

@@ -34,6 +34,12 @@ def with_own_choices(
             )
     values = {known[word].key: known[word].parse(value) for word, value in words.items()}
     checked(choose(settings, {**now.choices, **values}))
+    return with_own_values(process, id, values)
+
+
+def with_own_values(process: ProcessTree, id: str, values: Mapping[str, Value]) -> ProcessTree:
+    """Return a process with values of settings, by full key, for one operation; they were checked before."""
+    now = process.operation(id)
     own = tuple(dict.fromkeys((*now.own_choices, *values)))
     changed = replace(now, choices={**now.choices, **values}, own_choices=own, by_hand=True)
     return process if changed == now else process.with_operation(changed)
