@@ -24,7 +24,7 @@ from trunnion.toolpath.contact_passes.linking.leaning_links import LeaningLinks,
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.linking.pass_order import ordered
 from trunnion.toolpath.contact_passes.linking.surface_links import (
-    is_clear_of_stock,
+    is_free_of_stock,
     is_over,
     near_passes,
     surface_links,
@@ -106,7 +106,7 @@ def _surface_links(
     return {
         k: (LinkMoves(tip=w, axis=np.broadcast_to(passes[k + 1].axis[0], w.shape), mark=Mark.LINK),)
         for k, w in zip(np.flatnonzero(near).tolist(), tips, strict=True)
-        if is_clear_of_stock(np.vstack([passes[k].tip[-1:], w]), passes[k + 1].axis[0], parameters)
+        if is_free_of_stock(np.vstack([passes[k].tip[-1:], w]), passes[k + 1].axis[0], parameters)
     }
 
 

@@ -108,7 +108,7 @@ def is_over(
     )
 
 
-def is_clear_of_stock(tips: Floats, axis: Floats, parameters: LinkParameters) -> bool:
+def is_free_of_stock(tips: Floats, axis: Floats, parameters: LinkParameters) -> bool:
     """Return whether a tool with an axis (3,), where it is upright, meets no stock above its flutes along tips (k, 3)."""
     if parameters.free_tips is None or not is_upright(axis):
         return True
