@@ -202,3 +202,51 @@ def test_leads_do_not_go_on_into_what_the_pass_ends_before(backwards):
     assert low[1].max() < near + 0.05
     # At the other end nothing is in the way of its lead.
     assert seeing.position[:, 0].min() == pytest.approx(1.0)
+
+
+def test_no_link_goes_through_what_stands_between_the_ends_of_two_passes():
+    """A ridge stands between two passes from x = 25 on: they end before it, and the straight link between them would touch it."""
+    drive, setup, stock = trench(30.0)
+    heights = stock.heights.copy()
+    x, y = (
+        stock.corner[k] + (np.arange(n) + 0.5) * stock.cell for k, n in enumerate(heights.shape)
+    )
+    heights[np.ix_(x > 25.0, np.abs(y - 15.0) < 0.6)] = 20.0
+    stock = replace(stock, field=heights)
+    slim = replace(SLENDER, shank_diameter=1.9)
+    run = np.linspace(2.0, 29.0, 217)
+    passes = [
+        Pass(
+            tip=np.column_stack([run[::way], np.full(217, at), np.zeros(217)]),
+            axis=np.tile(UPRIGHT, (217, 1)),
+            normal=np.tile(UPRIGHT, (217, 1)),
+        )
+        for at, way in ((14.0, 1), (16.0, -1))
+    ]
+    kept, free, _ = without_stock_contact(passes, drive, slim, stock, 0.7, NO_PROGRESS)
+    assert len(kept) == 2 and np.allclose(kept[0].tip[-1, 0], kept[1].tip[0, 0], atol=0.3)
+    parameters = LinkParameters(stepover=0.7, lead_radius=0.0)
+    blind, seeing = (
+        linked(kept, drive, slim, DATA, stock, setup, replace(parameters, free_tips=f))
+        for f in (None, free)
+    )
+    assert (blind.mark == Mark.LINK).any() and not (seeing.mark == Mark.LINK).any()
+
+
+def test_leftovers_as_thick_as_the_flutes_are_long_are_in_a_neck_s_way_uphill():
+    """Ground falls to both sides of x = 15; 2.5 mm lie on it, uphill of the pass higher than where its flutes end."""
+    slope = grid(lambda x, y: -1.2 * np.abs(x - 15.0), n=31)
+    drive, _, stock = driven(slope, top=20.0)
+    x = stock.corner[0] + (np.arange(len(stock.heights)) + 0.5) * stock.cell
+    ground = np.repeat((-1.2 * np.abs(x - 15.0))[:, None], stock.heights.shape[1], axis=1)
+    tip = -1.2 * 10.0 + 1.0 * (np.hypot(1.0, 1.2) - 1.0)
+    across = Pass(
+        tip=np.array([[5.0, 2.0, tip], [5.0, 28.0, tip]]),
+        axis=np.tile(UPRIGHT, (2, 1)),
+        normal=np.tile(UPRIGHT, (2, 1)),
+    )
+    for thick, is_cut in ((0.3, True), (2.8, False)):
+        kept, _, _ = without_stock_contact(
+            [across], drive, SLENDER, replace(stock, field=ground + thick), 0.5, NO_PROGRESS
+        )
+        assert bool(kept) is is_cut
