@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -51,3 +53,23 @@ def test_pieces_are_the_same_every_time() -> None:
         np.array_equal(a.points, b.points) and np.array_equal(a.triangles, b.triangles)
         for a, b in zip(one, two, strict=True)
     )
+
+
+def test_faces_that_share_a_corner_alone_are_parted_there():
+    skin = joined(plane(4.0, 4.0, 5, tag=1), plane(4.0, 4.0, 5, tag=2, start=4.0))
+    upper = skin.face == 2
+    moved = skin.points.copy()
+    rows = np.unique(skin.triangles[upper])
+    moved[rows, 1] += 4.0
+    sheet = sheet_of(replace(skin, points=moved), (1, 2))
+    assert len(sheet.components()) == 1
+    pieces = in_pieces(sheet, in_mm2, 20.0)
+    assert sorted(p.face.tolist()[0] for p in pieces) == [1, 2]
+    assert all(len(set(p.face.tolist())) == 1 for p in pieces)
+
+
+def test_faces_about_one_middle_are_parted():
+    sheet = sheet_of(ROW, (1, 2, 3))
+    one = replace(sheet, face=np.where(sheet.face == 2, 2, 1))
+    pieces = in_pieces(one, in_mm2, 50.0)
+    assert sum(p.area().sum() for p in pieces) == pytest.approx(72.0) and len(pieces) == 3

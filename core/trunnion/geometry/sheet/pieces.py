@@ -25,7 +25,8 @@ AreaOf = Callable[[Sheet], Floats]
 
 
 def in_pieces(sheet: Sheet, area_of: AreaOf, most: float) -> list[Sheet]:
-    """Return connected pieces of a connected sheet, each of at most so large an area; the sheet itself where it is no larger."""
+    """Return connected pieces of a connected sheet, each of at most so large an area as far as it can be cut; the sheet itself where it is
+    no larger."""
     todo, found = [sheet], list[Sheet]()
     while todo:
         piece = todo.pop()
@@ -33,7 +34,10 @@ def in_pieces(sheet: Sheet, area_of: AreaOf, most: float) -> list[Sheet]:
             found.append(piece)
             continue
         halves = _between_faces(piece) or _across(piece)
-        todo += halves[::-1]
+        if len(halves) < 2:
+            found.append(piece)
+        else:
+            todo += halves[::-1]
     return found
 
 
@@ -47,14 +51,15 @@ def _between_faces(sheet: Sheet) -> list[Sheet]:
         return []
     area = sheet.area()
     middles = sheet.points[sheet.triangles].mean(axis=1)
-    weight = np.bincount(face, area)
+    weight = np.maximum(np.bincount(face, area), tolerance.AREA)
     centre = np.column_stack([np.bincount(face, area * m) for m in middles.T]) / weight[:, None]
     side = sheet.edges()[1]
     edge = np.argsort(side.ravel(), kind="stable")
     twice = np.flatnonzero(np.diff(side.ravel()[edge]) == 0)
     a, b = face[edge[twice] // 3], face[edge[twice + 1] // 3]
     beside = np.unique(np.sort(np.column_stack([a, b])[a != b], axis=1), axis=0)
-    away = np.linalg.norm(centre[beside[:, 0]] - centre[beside[:, 1]], axis=1)
+    # Faces about one middle are neighbours still: a link needs a length.
+    away = np.linalg.norm(centre[beside[:, 0]] - centre[beside[:, 1]], axis=1) + tolerance.SEW
     links = coo_matrix((away, beside.T), shape=(len(tags),) * 2).tocsr()
     first = int(np.argmax(_reached(links, 0)))
     from_first = _reached(links, first)
@@ -63,9 +68,9 @@ def _between_faces(sheet: Sheet) -> list[Sheet]:
 
 
 def _reached(links: csr_matrix, start: int) -> Floats:
-    """Return how far (k,) each face is from one, by links of neighbours; those that share a corner alone are as far as any."""
+    """Return how far (k,) each face is from one, by links of neighbours; those that share a corner alone are farther than any."""
     found = np.asarray(dijkstra(links, directed=False, indices=[start]))[0]
-    return np.where(np.isfinite(found), found, found[np.isfinite(found)].max())
+    return np.where(np.isfinite(found), found, found[np.isfinite(found)].max() + tolerance.SEW)
 
 
 def _across(sheet: Sheet) -> list[Sheet]:

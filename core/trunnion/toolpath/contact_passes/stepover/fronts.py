@@ -27,7 +27,12 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.contacts import Contacts
-from trunnion.toolpath.contact_passes.stepover.metric import metric_of, spread, stepover_measure
+from trunnion.toolpath.contact_passes.stepover.metric import (
+    metric_of,
+    spread,
+    stepover_area,
+    stepover_measure,
+)
 
 FINENESS = 0.5
 """Stepovers: the longest edge of the triangles that distances are measured over."""
@@ -63,7 +68,7 @@ def scallop_passes(
     parts = [
         piece
         for part in sheet_of(drive.skin, drive.faces).components()
-        for piece in in_pieces(part, lambda p: metric_of(p, measure).area(), LARGEST)
+        for piece in in_pieces(part, partial(stepover_area, measure=measure), LARGEST)
     ]
     made = []
     for k, part in enumerate(parts):

@@ -110,6 +110,13 @@ def metric_of(sheet: Sheet, measure: Measure) -> Metric:
     return Metric.of(sheet, _held_past_jumps(sheet, ends, side, lengths))
 
 
+def stepover_area(sheet: Sheet, measure: Measure) -> Floats:
+    """Return the area of each triangle (t,) of a sheet in square stepovers, jumps of the curvature left out."""
+    a, b = sheet.edges()[0].T
+    lengths = measure(sheet.points[a], sheet.normals[a], sheet.points[b], sheet.normals[b])
+    return Metric.of(sheet, lengths).area()
+
+
 def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> Floats:
     """Return the lengths (e,) of edges, `PAST` stepovers past each jump at least as long as on its rounder side."""
     slope, form = _forms(sheet, lengths[side])
