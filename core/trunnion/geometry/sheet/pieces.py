@@ -27,9 +27,9 @@ AreaOf = Callable[[Sheet], Floats]
 def in_pieces(sheet: Sheet, area_of: AreaOf, most: float) -> list[Sheet]:
     """Return connected pieces of a connected sheet, each of at most so large an area as far as it can be cut; the sheet itself where it is
     no larger."""
-    todo, found = [sheet], list[Sheet]()
-    while todo:
-        piece = todo.pop()
+    pending, found = [sheet], list[Sheet]()
+    while pending:
+        piece = pending.pop()
         if float(area_of(piece).sum()) <= most:
             found.append(piece)
             continue
@@ -37,7 +37,7 @@ def in_pieces(sheet: Sheet, area_of: AreaOf, most: float) -> list[Sheet]:
         if len(halves) < 2:
             found.append(piece)
         else:
-            todo += halves[::-1]
+            pending += halves[::-1]
     return found
 
 

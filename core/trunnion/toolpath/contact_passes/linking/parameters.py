@@ -41,7 +41,7 @@ class LinkParameters:
     "nearest" or "shorter", which is nearest where that takes the tool less far through the air; `reversing` allows passes to be cut the
     other way where that is nearer; `chord` is the chord error of links, mm. With `arcs` a near pass is reached by the leads of both, and
     above the stock where these have no space: for walls, beside which a cutter that follows the surface would be lifted to their tops.
-    Closed passes go on over their start by the `overlap` in mm. Of upright tools `free_tips` says where leads may go (None: anywhere).
+    Closed passes go on over their start by the `overlap` in mm. Of upright tools `free_tips` says where leads and links may go.
 
     Of leaning tools: `query` says which straight moves are clear, `link_clearance` which rapids are (None: any along the axis, none
     across); on a mm over the surface the axis turns by no more than `turn` rad.
