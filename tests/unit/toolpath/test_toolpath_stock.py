@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -69,8 +71,9 @@ def test_places_that_are_higher_are_found_in_an_area_only() -> None:
     assert len(stock.positions_above(1.0, Region.rectangle(100, 10, 120, 12))) == 0
 
 
+@pytest.mark.parametrize("flutes", [4.0, math.inf])
 @pytest.mark.parametrize("corner", [0.0, 2.0, 6.0])
-def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
+def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float, flutes: float) -> None:
     random = np.random.default_rng(7)
     starts = random.uniform((-5, -5, -9), (45, 35, 0), (20, 3))
     ends = np.where(
@@ -78,9 +81,15 @@ def test_the_compiled_field_is_lowered_as_its_plain_form(corner: float) -> None:
     )
     fast, plain = np.zeros((80, 60)), np.zeros((80, 60))
     gone, plainly_gone = np.zeros((20, 2)), np.zeros((20, 2))
-    heightfield.zmap_cut(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, gone)
-    heightfield.zmap_cut_reference(plain, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, plainly_gone)
+    heightfield.zmap_cut(fast, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, flutes, gone)
+    heightfield.zmap_cut_reference(
+        plain, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, flutes, plainly_gone
+    )
     assert max(np.abs(fast - plain).max(), np.abs(gone - plainly_gone).max()) < 1e-9
+    # Some are cut, and of some the tops are beyond the flutes of cuts that would take them.
+    deeper = np.zeros((80, 60))
+    heightfield.zmap_cut(deeper, 0.0, 0.0, 0.5, starts, ends, 6.0, corner, math.inf, gone)
+    assert fast.any() and (deeper < fast).any() is np.bool_(flutes < math.inf)
 
 
 @pytest.mark.parametrize("corner", [0.0, 2.0, 6.0])
@@ -125,6 +134,7 @@ def test_a_cutter_smaller_than_a_cell_removes_nothing_for_certain() -> None:
         np.array([[6.0, 5.0, -1.0]]),
         0.4,
         0.0,
+        math.inf,
         np.zeros((1, 2)),
     )
     assert not heights.any()

@@ -30,6 +30,7 @@ def zmap_cut(
     ends: Floats,
     radius: float,
     corner: float,
+    flutes: float,
     gone: Floats,
 ) -> None:
     """Lower a field in place under straight moves of the tip from `starts` to `ends` (n, 3) of a flat,
@@ -37,8 +38,9 @@ def zmap_cut(
 
     A cell gets the height of the cutter's lower side at its furthest corner from the path, at most
     half a diagonal beyond its centre, for the move's higher end: never lower than the true cut
-    anywhere in the cell. gone (n, 2) gets the heights that each move takes off, summed over cells, and the sum of their
-    squares.
+    anywhere in the cell. What reaches higher than `flutes` mm over its lower end stays: they went by
+    underneath. gone (n, 2) gets the heights that each move takes off, summed over cells, and the sum
+    of their squares.
     """
     nx, ny = heights.shape
     slack = cell * HALF_DIAGONAL
@@ -54,6 +56,7 @@ def zmap_cut(
         ax, ay, bx, by = starts[n, 0], starts[n, 1], ends[n, 0], ends[n, 1]
         # Slopes count at their higher end.
         z = max(starts[n, 2], ends[n, 2])
+        top = min(starts[n, 2], ends[n, 2]) + flutes
         dx, dy = bx - ax, by - ay
         square = dx * dx + dy * dy
         share = 1.0 / square if square > 0.0 else 0.0
@@ -64,7 +67,7 @@ def zmap_cut(
         for i in range(i0, i1):
             px = x0 + (i + 0.5) * cell - ax
             for j in range(j0, j1):
-                if heights[i, j] <= z:
+                if heights[i, j] <= z or heights[i, j] > top:
                     continue
                 py = y0 + (j + 0.5) * cell - ay
                 t = min(max((px * dx + py * dy) * share, 0.0), 1.0)
@@ -215,6 +218,7 @@ def zmap_cut_reference(
     ends: Floats,
     radius: float,
     corner: float,
+    flutes: float,
     gone: Floats,
 ) -> None:
     """Plain numpy form of `zmap_cut`: every cell for every move."""
@@ -224,7 +228,8 @@ def zmap_cut_reference(
         far = _distance(centres, a[:2], b[:2]) + cell * HALF_DIAGONAL
         inner = np.maximum(far - (radius - corner), 0.0)
         lift = max(a[2], b[2]) + corner - np.sqrt(np.maximum(corner**2 - inner**2, 0.0))
-        heights[...] = np.where(far <= radius, np.minimum(heights, lift), heights)
+        cut = (far <= radius) & (heights <= min(a[2], b[2]) + flutes)
+        heights[...] = np.where(cut, np.minimum(heights, lift), heights)
         gone[n] = (before - heights).sum(), ((before - heights) ** 2).sum()
 
 

@@ -230,6 +230,7 @@ class PlanningStock:
                 ends[some],
                 radius + wider,
                 min(tool.corner_radius, radius),
+                math.inf,
                 gone[some],
             )
         volume, squares = (

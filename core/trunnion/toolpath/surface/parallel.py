@@ -28,7 +28,6 @@ from trunnion.progress import Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.axis_search import leaned_by
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.contact_passes.linking.link_passes import linked
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.overrun import OverrunStrip
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
@@ -39,8 +38,8 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
     strips_over,
     tip_spacing,
 )
-from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.contact_passes.upright.tracing import follow
+from trunnion.toolpath.contact_passes.upright.upright_path import linked_without_contact
 from trunnion.toolpath.contract import Planned, lead_and_tilt, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -186,9 +185,6 @@ def parallel(
         settings.chord,
         progress.part(0.6, 0.7),
     )
-    passes, free, blocked = without_stock_contact(
-        passes, drive, tool, stock, planes.widest, progress
-    )
     parameters = LinkParameters(
         stepover=planes.widest,
         safety=settings.safety,
@@ -196,12 +192,19 @@ def parallel(
         order="nearest",
         reversing=settings.way == "both",
         chord=settings.chord,
-        free_tips=free,
     )
-    return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.7, 1.0)),
-        findings=(*found, *lost, *blocked),
+    path, blocked = linked_without_contact(
+        passes,
+        planes.widest,
+        drive,
+        tool,
+        data,
+        stock,
+        setup,
+        parameters,
+        progress.part(0.7, 1.0),
     )
+    return Planned(path=path, findings=(*found, *lost, *blocked))
 
 
 def _untouched(drive: SurfaceDrive, tool: Tool) -> Finding:

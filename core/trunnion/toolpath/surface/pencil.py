@@ -24,13 +24,12 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contact_passes.linking.link_passes import linked
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import slopes_of
-from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import follow
+from trunnion.toolpath.contact_passes.upright.upright_path import linked_without_contact
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -150,7 +149,6 @@ def pencil(
         )
     ]
     passes = _passes(lines, ground, settings.chord, progress.part(0.5, 0.8))
-    passes, free, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     parameters = LinkParameters(
         stepover=stepover,
         safety=settings.safety,
@@ -158,12 +156,11 @@ def pencil(
         order="nearest",
         reversing=True,
         chord=settings.chord,
-        free_tips=free,
     )
-    return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
-        findings=blocked,
+    path, blocked = linked_without_contact(
+        passes, stepover, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)
     )
+    return Planned(path=path, findings=blocked)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

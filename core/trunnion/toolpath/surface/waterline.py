@@ -29,17 +29,16 @@ from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.threads import in_parallel
 from trunnion.toolpath.contact_passes.choices import TOO_SHALLOW, TOO_STEEP
-from trunnion.toolpath.contact_passes.linking.link_passes import linked
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
     slopes_of,
 )
-from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.contact_passes.upright.stock_trimming import sample_count, trimmed_to_stock
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import thinned
+from trunnion.toolpath.contact_passes.upright.upright_path import linked_without_contact
 from trunnion.toolpath.contact_passes.upright.wall_foot import foot_passes
 from trunnion.toolpath.contact_passes.upright.wall_levels import UPWARD, lowest_tips, with_levels
 from trunnion.toolpath.contract import Planned, strategy
@@ -185,7 +184,6 @@ def waterline(
     if settings.trim:
         steep = _samples(drive, math.radians(settings.shallowest))
         passes = trimmed_to_stock(passes, steep, drive, tool, stock, data.feed, progress)
-    passes, free, blocked = without_stock_contact(passes, drive, tool, stock, step, progress)
     parameters = LinkParameters(
         stepover=max(step, tool.radius),
         safety=settings.safety,
@@ -193,12 +191,11 @@ def waterline(
         chord=settings.chord,
         arcs=True,
         overlap=settings.overlap,
-        free_tips=free,
     )
-    return Planned(
-        path=linked(passes, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)),
-        findings=(*found, *blocked),
+    path, blocked = linked_without_contact(
+        passes, step, drive, tool, data, stock, setup, parameters, progress.part(0.8, 1.0)
     )
+    return Planned(path=path, findings=(*found, *blocked))
 
 
 def _samples(drive: SurfaceDrive, shallowest: float) -> AreaSamples:

@@ -12,10 +12,11 @@ from surface_drives import DATA, driven, grid, joined, roughed
 from trunnion.geometry.kernels.heightfield import zmap_meets, zmap_meets_reference
 from trunnion.model.motion.toolpath import Mark
 from trunnion.progress import NO_PROGRESS
-from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.link_passes import joined as joined_passes
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
+from trunnion.toolpath.contact_passes.upright.upright_path import linked_without_contact
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
 from trunnion.toolpath.surface.parallel import ParallelSettings, parallel
 from trunnion.toolpath.surface.waterline import WaterlineSettings, waterline
@@ -55,6 +56,16 @@ def trench(wide, deep=20.0):
 def along(y, z=0.0, start=2.0, end=28.0):
     tips = np.array([[start, y, z], [end, y, z]])
     return Pass(tip=tips, axis=np.tile(UPRIGHT, (2, 1)), normal=np.tile(UPRIGHT, (2, 1)))
+
+
+def run_of(start, end, y, z=0.0):
+    """Return a pass along x in short moves."""
+    run = np.linspace(start, end, 217)
+    return Pass(
+        tip=np.column_stack([run, np.full(217, y), np.full(217, z)]),
+        axis=np.tile(UPRIGHT, (217, 1)),
+        normal=np.tile(UPRIGHT, (217, 1)),
+    )
 
 
 @pytest.mark.parametrize(("wide", "clear"), [(30.0, True), (1.5, False)])
@@ -143,6 +154,22 @@ def test_what_is_left_on_a_wall_is_told_from_the_rim_that_the_field_keeps_there(
     assert bool(kept) is clear and bool(findings) is not clear
 
 
+def test_passes_step_by_step_into_tall_stock_end_where_the_neck_would_come_to_it():
+    """Stock stands 20 mm high from y = 15 on; flutes of 3 mm go by under it, and what is over them stays in the way of the next pass."""
+    drive, _, stock = trench(30.0)
+    y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
+    heights = stock.heights.copy()
+    heights[:, y > 15.0] = 20.0
+    slim = replace(SLENDER, shank_diameter=1.9)
+    steps = [run_of(2.0, 28.0, at) for at in np.arange(13.9, 15.5, 0.005)]
+    kept, _, findings = without_stock_contact(
+        steps, drive, slim, replace(stock, field=heights), 0.005, NO_PROGRESS
+    )
+    assert findings
+    # Its neck of 0.95 mm comes to the stock at y = 14.05; cells are a quarter of a millimetre.
+    assert 13.8 < max(p.tip[0, 1] for p in kept) < 14.3
+
+
 def test_a_ridge_away_from_walls_is_stock_though_it_is_narrow():
     drive, _, stock = trench(30.0)
     y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
@@ -189,13 +216,13 @@ def test_leads_do_not_go_on_into_what_the_pass_ends_before(backwards):
         axis=np.tile(UPRIGHT, (105, 1)),
         normal=np.tile(UPRIGHT, (105, 1)),
     )
-    kept, free, _ = without_stock_contact([whole], drive, slim, stock, 0.5, NO_PROGRESS)
+    kept, beside, _ = without_stock_contact([whole], drive, slim, stock, 0.5, NO_PROGRESS)
     near = kept[0].tip[0 if backwards else -1, 0]
     assert 18.0 < near <= 19.3
     parameters = LinkParameters(stepover=0.5, lead_radius=1.0)
     blind, seeing = (
-        linked(kept, drive, slim, DATA, stock, setup, replace(parameters, free_tips=f))
-        for f in (None, free)
+        joined_passes(kept, drive, slim, DATA, stock, setup, replace(parameters, pass_stock=f))
+        for f in (None, beside)
     )
     low = [p.position[p.position[:, 2] < 15.0, 0] for p in (blind, seeing)]
     assert low[0].max() > near + 0.9
@@ -204,33 +231,76 @@ def test_leads_do_not_go_on_into_what_the_pass_ends_before(backwards):
     assert seeing.position[:, 0].min() == pytest.approx(1.0)
 
 
-def test_no_link_goes_through_what_stands_between_the_ends_of_two_passes():
-    """A ridge stands between two passes from x = 25 on: they end before it, and the straight link between them would touch it."""
-    drive, setup, stock = trench(30.0)
+def with_ridge(stock, half, height=20.0):
+    """Return a stock with a ridge about y = 15, from x = 25 on."""
     heights = stock.heights.copy()
     x, y = (
         stock.corner[k] + (np.arange(n) + 0.5) * stock.cell for k, n in enumerate(heights.shape)
     )
-    heights[np.ix_(x > 25.0, np.abs(y - 15.0) < 0.6)] = 20.0
-    stock = replace(stock, field=heights)
+    heights[np.ix_(x > 25.0, np.abs(y - 15.0) < half)] = height
+    return replace(stock, field=heights)
+
+
+def test_no_link_goes_through_what_stands_between_the_ends_of_two_passes():
+    """A ridge stands between two passes from x = 25 on: they end before it, and the straight link between them would touch it."""
+    drive, setup, stock = trench(30.0)
+    stock = with_ridge(stock, 0.6)
     slim = replace(SLENDER, shank_diameter=1.9)
-    run = np.linspace(2.0, 29.0, 217)
-    passes = [
-        Pass(
-            tip=np.column_stack([run[::way], np.full(217, at), np.zeros(217)]),
-            axis=np.tile(UPRIGHT, (217, 1)),
-            normal=np.tile(UPRIGHT, (217, 1)),
-        )
-        for at, way in ((14.0, 1), (16.0, -1))
-    ]
-    kept, free, _ = without_stock_contact(passes, drive, slim, stock, 0.7, NO_PROGRESS)
+    passes = [run_of(2.0, 29.0, 14.0), run_of(29.0, 2.0, 16.0)]
+    kept, beside, _ = without_stock_contact(passes, drive, slim, stock, 0.7, NO_PROGRESS)
     assert len(kept) == 2 and np.allclose(kept[0].tip[-1, 0], kept[1].tip[0, 0], atol=0.3)
     parameters = LinkParameters(stepover=0.7, lead_radius=0.0)
     blind, seeing = (
-        linked(kept, drive, slim, DATA, stock, setup, replace(parameters, free_tips=f))
-        for f in (None, free)
+        joined_passes(kept, drive, slim, DATA, stock, setup, replace(parameters, pass_stock=f))
+        for f in (None, beside)
     )
     assert (blind.mark == Mark.LINK).any() and not (seeing.mark == Mark.LINK).any()
+
+
+def test_no_link_goes_through_what_only_later_passes_cut():
+    """A ridge stands between two passes; those after them cut it away step by step, the first two are linked before."""
+    drive, setup, stock = trench(30.0)
+    stock = with_ridge(stock, 0.6)
+    slim = replace(SLENDER, shank_diameter=1.9, neck_length=25.0)
+    first = [run_of(2.0, 29.0, 14.0), run_of(29.0, 2.0, 16.0)]
+    stairs = [run_of(24.0, 29.5, 15.0, z) for z in np.arange(18.0, -0.1, -2.0)]
+    parameters = LinkParameters(stepover=0.7, lead_radius=0.0)
+    for later, earlier in ((stairs, []), ([], stairs)):
+        passes = [*earlier, *first, *later]
+        kept, beside, _ = without_stock_contact(passes, drive, slim, stock, 0.7, NO_PROGRESS)
+        made = joined_passes(
+            kept, drive, slim, DATA, stock, setup, replace(parameters, pass_stock=beside)
+        )
+        links = made.position[made.mark == Mark.LINK]
+        across = np.abs(links[:, 1] - 15.0) < 1.5
+        # Cut away before, nothing of it is in the way.
+        assert bool((across & (links[:, 2] < 1.0)).any()) is bool(earlier)
+
+
+@pytest.mark.parametrize("order", ["given", "nearest"])
+def test_passes_are_asked_in_the_order_that_they_are_cut(order):
+    """Steps make space for those below, but the lowest one begins nearest to the end of the pass before: cut at first it makes none."""
+    drive, setup, stock = trench(30.0, deep=9.0)
+    y = stock.corner[1] + (np.arange(stock.heights.shape[1]) + 0.5) * stock.cell
+    heights = stock.heights.copy()
+    heights[:, y > 18.0] = 9.0
+    stock = replace(stock, field=heights)
+    stairs = [run_of(28.0, 2.0, 22.0, z) for z in np.arange(7.0, -0.1, -1.0)]
+    parameters = LinkParameters(stepover=0.5, lead_radius=0.0, order=order)
+    made, findings = linked_without_contact(
+        [run_of(2.0, 28.0, 15.0), *stairs],
+        0.5,
+        drive,
+        SLENDER,
+        DATA,
+        stock,
+        setup,
+        parameters,
+        NO_PROGRESS,
+    )
+    cut = made.position[(made.mark == Mark.CUT) & (np.abs(made.position[:, 1] - 22.0) < 0.1)]
+    assert bool(findings) is (order == "nearest")
+    assert bool(cut[:, 2].min() > 1.0) is (order == "nearest")
 
 
 def test_leftovers_as_thick_as_the_flutes_are_long_are_in_a_neck_s_way_uphill():

@@ -89,7 +89,7 @@ class Blocks:
         """Bring the tip to a position (3,) through the air, at the end by a feed; it goes off and comes at feed for so many mm at least."""
         stops = self._outside(position, axis)
         if self._parts and is_upright(self.axis) and is_upright(axis):
-            self._lift(position)
+            self._lift(position, retract)
         else:
             if self._parts:
                 self._leave(retract)
@@ -121,18 +121,18 @@ class Blocks:
             centre=np.full((int(kept.sum()), 3), np.nan),
         )
 
-    def _lift(self, position: Floats) -> None:
-        """Go over a position, upright: no higher than what may be in between demands."""
+    def _lift(self, position: Floats, retract: float) -> None:
+        """Go over a position, upright, at feed for so many mm: no higher than what may be in between demands."""
         safe = lowest_tip(self._air, self.here[:2], position[:2]) + self._air.safety
         height = min(max(safe, float(self.here[2]), float(position[2])), self._air.clearance)
-        self._rise(height)
+        self._rise(height, retract)
         self._rapid(np.append(self.here[:2], height), UPRIGHT)
         self._rapid(np.append(position[:2], height), UPRIGHT)
 
-    def _rise(self, height: float) -> None:
-        """Feed up to a height at most as far as something hangs over beside the tool, or a wall stands beside it that it could not be led
-        off: what was left there stands in its way."""
-        top = self._overhang_top(self.here)
+    def _rise(self, height: float, retract: float) -> None:
+        """Feed up for so many mm, and to a height at most as far as something hangs over beside the tool, or a wall stands beside it that
+        it could not be led off: what was left there stands in its way."""
+        top = max(self._overhang_top(self.here), float(self.here[2]) + retract)
         if self._led_straight_up():
             top = max(top, self._air.stock().height(self.here, self.here, self._tool.radius))
         if top > self.here[2]:
@@ -165,7 +165,7 @@ class Blocks:
         if self._has_retreats:
             self.feed(_towards(self.here, axis, stops[0], retract)[None], axis, Mark.LEAD)
         elif is_upright(axis):
-            self._rise(float(stops[0][2]))
+            self._rise(float(stops[0][2]), retract)
         for stop in stops:
             self._rapid(stop, axis)
 

@@ -134,12 +134,14 @@ def _strides(radius: Floats) -> Ints:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _PassEnds:
-    """One end of each of some passes: the tip (m, 3) there, `along` (m, 3) on from the pass, the face's normal and the axis (m, 3)."""
+    """One end of each of some passes: the tip (m, 3) there, `along` (m, 3) on from the pass, the face's normal and the axis (m, 3), and how
+    many passes are `cut` (m,) when the tool is there."""
 
     tip: Floats
     along: Floats
     normal: Floats
     axis: Floats
+    cut: Ints
 
     @staticmethod
     def of(passes: Sequence[Pass], *, at_end: bool) -> _PassEnds:
@@ -150,6 +152,7 @@ class _PassEnds:
             along=np.array([_off(p.tip[::step], p.axis[row]) for p in passes]),
             normal=np.array([p.normal[row] for p in passes]),
             axis=np.array([p.axis[row] for p in passes]),
+            cut=np.arange(len(passes)) + int(at_end),
         )
 
     def arcs(self, radius: Floats) -> Floats:
@@ -159,7 +162,7 @@ class _PassEnds:
     def radii(self, parameters: LinkParameters) -> Floats:
         """Return the radii (m,) in mm of the leads: where the tool would touch something on one it is shorter, or there is none."""
         radius = np.full(len(self.tip), parameters.lead_radius)
-        if parameters.query is None and parameters.free_tips is None:
+        if parameters.query is None and parameters.pass_stock is None:
             return radius
         touching = np.arange(len(radius))
         for share in SHORTER:
@@ -167,7 +170,9 @@ class _PassEnds:
             arcs = self.arcs(radius)[touching, stride - 1 :: stride]
             start = np.concatenate([self.tip[touching, None], arcs[:, :-1]], axis=1)
             axis = np.repeat(self.axis[touching], arcs.shape[1], axis=0)
-            is_clear = _free_moves(start.reshape(-1, 3), arcs.reshape(-1, 3), axis, parameters)
+            cut = np.repeat(self.cut[touching], arcs.shape[1])
+            moves = start.reshape(-1, 3), arcs.reshape(-1, 3)
+            is_clear = _free_moves(*moves, axis, cut, parameters)
             touching = touching[~is_clear.reshape(arcs.shape[:2]).all(axis=1)]
             if not len(touching):
                 break
@@ -175,14 +180,16 @@ class _PassEnds:
         return radius
 
 
-def _free_moves(start: Floats, end: Floats, axis: Floats, parameters: LinkParameters) -> Bools:
-    """Return which straight moves (k,) with axes (k, 3) meet nothing."""
+def _free_moves(
+    start: Floats, end: Floats, axis: Floats, cut: Ints, parameters: LinkParameters
+) -> Bools:
+    """Return which straight moves (k,) with axes (k, 3) meet nothing when so many passes (k,) are cut."""
     clear = np.ones(len(end), dtype=bool)
     if parameters.query is not None:
         clear &= parameters.query(end, axis, start_tip=start, start_axis=axis)
-    if parameters.free_tips is not None:
+    if parameters.pass_stock is not None:
         rows = np.flatnonzero(np.abs(axis - UPRIGHT).max(axis=1) < SAME)
-        clear[rows] &= parameters.free_tips(end[rows])
+        clear[rows] &= parameters.pass_stock.is_free(end[rows], cut[rows])
     return clear
 
 

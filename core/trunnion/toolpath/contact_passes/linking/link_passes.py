@@ -21,10 +21,10 @@ from trunnion.toolpath.contact_passes.extension import extended
 from trunnion.toolpath.contact_passes.linking.blocks import Blocks
 from trunnion.toolpath.contact_passes.linking.leads import Leads, leads_of
 from trunnion.toolpath.contact_passes.linking.leaning_links import LeaningLinks, Link, LinkMoves
-from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters, is_upright
 from trunnion.toolpath.contact_passes.linking.pass_order import ordered
 from trunnion.toolpath.contact_passes.linking.surface_links import (
-    is_free_of_stock,
+    free_of_stock,
     is_over,
     near_passes,
     surface_links,
@@ -44,20 +44,45 @@ def linked(
     progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
-    passes = extended([p for p in passes if len(p) > 1], drive, tool, parameters.query)
+    passes = as_cut(passes, drive, tool, parameters, progress.part(0.0, 0.2))
+    return joined(passes, drive, tool, data, stock, setup, parameters, progress.part(0.2, 1.0))
+
+
+def as_cut(
+    passes: Sequence[Pass],
+    drive: SurfaceDrive,
+    tool: Tool,
+    parameters: LinkParameters,
+    progress: Progress = NO_PROGRESS,
+) -> list[Pass]:
+    """Return the passes as they are cut, in their order, run on past free rims."""
+    whole = extended([p for p in passes if len(p) > 1], drive, tool, parameters.query)
+    return ordered(whole, parameters, progress) if whole else []
+
+
+def joined(
+    passes: Sequence[Pass],
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    parameters: LinkParameters,
+    progress: Progress = NO_PROGRESS,
+) -> Toolpath:
+    """Return the toolpath that cuts passes as they are, one after the other (`linked`)."""
     if not passes:
         return EMPTY
-    # Order, then leads and links of all passes at once: drops on the skin are cheap only in batches.
-    passes = ordered(passes, parameters, progress.part(0.0, 0.2))
-    leads = leads_of(passes, drive, tool, parameters, progress.part(0.2, 0.4))
-    links = _surface_links(passes, leads, drive, tool, parameters, progress.part(0.4, 0.8))
+    # Leads and links of all passes at once: drops on the skin are cheap only in batches.
+    leads = leads_of(passes, drive, tool, parameters, progress.part(0.0, 0.25))
+    links = _surface_links(passes, leads, drive, tool, parameters, progress.part(0.25, 0.75))
     leaning = LeaningLinks.of(passes, leads)
     links |= leaning.near(tool, parameters)
     far = np.ones(len(passes) - 1, dtype=bool)
     far[list(links)] = False
     approach, retract = _retreats(passes, far, leads, parameters, progress)
     links |= leaning.through_air(
-        np.flatnonzero(far), retract[:-1], approach[1:], parameters, progress.part(0.8, 0.9)
+        np.flatnonzero(far), retract[:-1], approach[1:], parameters, progress.part(0.75, 0.9)
     )
     # Assemble: where passes have no link, by their leads and a travel over everything.
     blocks = Blocks(tool, data, stock, setup, drive, parameters)
@@ -103,10 +128,17 @@ def _surface_links(
         ]
     else:
         tips = surface_links(passes, near, drive, tool, parameters, progress)
+    rows = np.flatnonzero(near).tolist()
+    whole = [np.vstack([passes[k].tip[-1:], w]) for k, w in zip(rows, tips, strict=True)]
+    upright = [n for n, k in enumerate(rows) if is_upright(passes[k + 1].axis[0])]
+    is_free = np.ones(len(rows), dtype=bool)
+    is_free[upright] = free_of_stock(
+        [whole[n] for n in upright], [rows[n] + 1 for n in upright], parameters
+    )
     return {
         k: (LinkMoves(tip=w, axis=np.broadcast_to(passes[k + 1].axis[0], w.shape), mark=Mark.LINK),)
-        for k, w in zip(np.flatnonzero(near).tolist(), tips, strict=True)
-        if is_free_of_stock(np.vstack([passes[k].tip[-1:], w]), passes[k + 1].axis[0], parameters)
+        for k, w, free in zip(rows, tips, is_free.tolist(), strict=True)
+        if free
     }
 
 
@@ -125,4 +157,9 @@ def _retreats(
         ):
             axes = np.array([passes[k].axis[of_pass] for k in rows.tolist()])
             found[rows] = parameters.link_clearance.retreats(lead[rows, end], axes)
+    if parameters.pass_stock is not None:
+        # Flutes that came from the side, under stock that the neck went by, would go up through it.
+        left = np.append(np.flatnonzero(far), len(passes) - 1)
+        tips = leads.lead_out[left, -1]
+        retract[left] = np.maximum(parameters.pass_stock.tops(tips, left + 1) - tips[:, 2], 0.0)
     return approach, retract

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.plan.clearance import ClearanceQuery
 from trunnion.toolpath.contact_passes.passes import UPRIGHT
 
@@ -18,8 +17,16 @@ NEAR = 3.0
 SAME = 1e-9
 """Two directions that differ by less are one."""
 
-FreeTips = Callable[[Floats], Bools]
-"""Says at which tips (k, 3) an upright tool meets no stock above its flutes."""
+
+class PassStock(Protocol):
+    """What stands beside passes of an upright tool while they are cut in their order (`upright.stock_contact`)."""
+
+    def is_free(self, tips: Floats, cut: Ints) -> Bools:
+        """Return at which tips (k, 3) the tool meets no stock above its flutes when so many passes (k,) are cut."""
+
+    def tops(self, tips: Floats, cut: Ints) -> Floats:
+        """Return how high (k,) mm stock stands within the cutter's radius of tips (k, 3) when so many passes (k,) are cut; minus infinity
+        where there is none."""
 
 
 class LinkClearance(Protocol):
@@ -41,7 +48,7 @@ class LinkParameters:
     "nearest" or "shorter", which is nearest where that takes the tool less far through the air; `reversing` allows passes to be cut the
     other way where that is nearer; `chord` is the chord error of links, mm. With `arcs` a near pass is reached by the leads of both, and
     above the stock where these have no space: for walls, beside which a cutter that follows the surface would be lifted to their tops.
-    Closed passes go on over their start by the `overlap` in mm. Of upright tools `free_tips` says where leads and links may go.
+    Closed passes go on over their start by the `overlap` in mm. Of upright tools `pass_stock` says where leads and links may go.
 
     Of leaning tools: `query` says which straight moves are clear, `link_clearance` which rapids are (None: any along the axis, none
     across); on a mm over the surface the axis turns by no more than `turn` rad.
@@ -55,7 +62,7 @@ class LinkParameters:
     chord: float = 2e-3
     arcs: bool = False
     overlap: float = 0.0
-    free_tips: FreeTips | None = None
+    pass_stock: PassStock | None = None
     turn: float = math.inf
     query: ClearanceQuery | None = None
     link_clearance: LinkClearance | None = None

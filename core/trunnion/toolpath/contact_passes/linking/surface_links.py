@@ -108,11 +108,16 @@ def is_over(
     )
 
 
-def is_free_of_stock(tips: Floats, axis: Floats, parameters: LinkParameters) -> bool:
-    """Return whether a tool with an axis (3,), where it is upright, meets no stock above its flutes along tips (k, 3)."""
-    if parameters.free_tips is None or not is_upright(axis):
-        return True
-    return bool(parameters.free_tips(spaced(tips, APART)[0]).all())
+def free_of_stock(
+    links: Sequence[Floats], cut: Sequence[int], parameters: LinkParameters
+) -> list[bool]:
+    """Return along which links, tips (k, 3) each, an upright tool meets no stock above its flutes when so many passes are cut."""
+    if parameters.pass_stock is None or not links:
+        return [True] * len(links)
+    tips = [spaced(link, APART)[0] for link in links]
+    number = np.repeat(np.arange(len(tips)), [len(t) for t in tips])
+    is_free = parameters.pass_stock.is_free(np.concatenate(tips), np.asarray(cut)[number])
+    return (np.bincount(number, ~is_free, len(tips)) == 0.0).tolist()
 
 
 def _on_chord(points: Floats, chord: Floats) -> Floats:

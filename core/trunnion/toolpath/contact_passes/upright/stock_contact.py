@@ -8,7 +8,8 @@ never cut whole. Positions where that is in the way are looked at again in finer
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -22,7 +23,7 @@ from trunnion.plan.freeform.cutters.cutter import level_disc
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.choices import IN_STOCK
-from trunnion.toolpath.contact_passes.linking.parameters import FreeTips
+from trunnion.toolpath.contact_passes.linking.parameters import PassStock
 from trunnion.toolpath.contact_passes.passes import Pass, spaced
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
@@ -40,6 +41,39 @@ SMALLEST_LEFTOVER = 0.5
 """mm2: less than this is the rim of an area."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _PassStock:
+    """Stock in fine cells beside passes of a tool that are cut in their order (`linking.parameters.PassStock`)."""
+
+    stock: PlanningStock
+    passes: Sequence[Pass]
+    tool: Tool
+
+    def is_free(self, tips: Floats, cut: Ints) -> Bools:
+        body = _body(self.tool, self.stock)
+        found = np.ones(len(tips), dtype=bool)
+        for stock, rows in self._moments(cut):
+            found[rows] = _is_free_of(stock, tips[rows], body)
+        return found
+
+    def tops(self, tips: Floats, cut: Ints) -> Floats:
+        found = np.full(len(tips), -np.inf)
+        # Of cells that it touches, those with their middle within the radius: those that the cutter has cut.
+        radius = max(self.tool.radius - heightfield.HALF_DIAGONAL * self.stock.cell, 0.0)
+        for stock, rows in self._moments(cut):
+            found[rows] = [stock.height(tip, tip, radius) for tip in tips[rows]]
+        return found
+
+    def _moments(self, cut: Ints) -> Iterator[tuple[PlanningStock, Ints]]:
+        """Yield the stock when so many passes (k,) are cut, with the rows that ask for it, moment by moment."""
+        stock, done = self.stock.working(), 0
+        for moment in np.unique(cut).tolist():
+            for one in self.passes[done:moment]:
+                _lower(stock, one, self.tool)
+            done = moment
+            yield stock, np.flatnonzero(cut == moment)
+
+
 def without_stock_contact(
     passes: Sequence[Pass],
     drive: SurfaceDrive,
@@ -47,36 +81,25 @@ def without_stock_contact(
     stock: PlanningStock,
     stepover: float,
     progress: Progress,
-) -> tuple[list[Pass], FreeTips | None, tuple[Finding, ...]]:
-    """Return what of passes in their order, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes; at which
-    tips near their ends it still doesn't when all of them are cut, None for anywhere; and a finding of the area that is left.
+) -> tuple[list[Pass], PassStock | None, tuple[Finding, ...]]:
+    """Return what of passes in the order they are cut, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes;
+    what stands beside them meanwhile, None where nothing does; and a finding of the area that is left.
 
     What passes before have cut is gone, and what lies thinly on the part.
     """
     rows = np.array(tool.profile()).reshape(-1, 4)
     if not len(passes) or not len(rows) or not all(p.upright for p in passes):
         return list(passes), None, ()
-    tips, owner, segment = _spaced(passes, stock.cell)
+    tips, owner, segment = _spaced(passes, FINE)
     low, high = _around(stock, tips, rows, tool)
     doubtful = ~_is_free(stock.cropped(low, high), tips, rows)
     if not doubtful.any():
         return list(passes), None, ()
-    fine = progress.aside(
+    before = progress.aside(
         lambda own: stock.centred_finely(low, high, FINE, own), "Cutting the stock in finer cells"
     )
-    field = fine.field
-    body = _widened(rows, tool.radius, heightfield.HALF_DIAGONAL * fine.cell)
-    progress.aside(partial(_take_part_off, fine, drive, tips[doubtful], tool))
-    # Passes only lower it.
-    top = float(field.max())
-
-    def is_free(at: Floats) -> Bools:
-        found = np.zeros(len(at), dtype=bool)
-        heightfield.zmap_meets(
-            field, top, *fine.corner, fine.cell, np.ascontiguousarray(at), body, found
-        )
-        return ~found
-
+    progress.aside(partial(_take_part_off, before, drive, tips[doubtful], tool))
+    fine, body = before.working(), _body(tool, before)
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
     kept, left, over = list[Pass](), 0.0, 0.0
     for k, one in enumerate(passes):
@@ -85,16 +108,38 @@ def without_stock_contact(
         met = np.zeros(starts[k + 1] - starts[k], dtype=bool)
         some = np.flatnonzero(doubtful[of])
         if len(some):
-            met[some] = ~is_free(tips[of][some])
+            met[some] = ~_is_free_of(fine, tips[of][some], body)
         pieces = [one]
         if met.any():
             pieces = _pieces(one, segment[of][met])
             left += one.length - sum(p.length for p in pieces)
-            over = max(over, float(field.max() - tips[of][met][:, 2].min()))
+            over = max(over, float(fine.field.max() - tips[of][met][:, 2].min()))
         for piece in pieces:
             _lower(fine, piece, tool)
         kept += pieces
-    return kept, is_free, _findings(left * stepover, over, drive, tool)
+    return kept, _PassStock(before, kept, tool), _findings(left * stepover, over, drive, tool)
+
+
+def _body(tool: Tool, stock: PlanningStock) -> Floats:
+    """Return the cones (r, 4) of a tool above its flutes, wider as far as the cells of a stock ask for."""
+    rows = np.array(tool.profile()).reshape(-1, 4)
+    return _widened(rows, tool.radius, heightfield.HALF_DIAGONAL * stock.cell)
+
+
+def _is_free_of(stock: PlanningStock, tips: Floats, body: Floats) -> Bools:
+    """Return at which tips (k, 3) a body of cones (r, 4) meets nothing of a stock."""
+    found = np.zeros(len(tips), dtype=bool)
+    field = stock.field
+    heightfield.zmap_meets(
+        field,
+        float(field.max()),
+        *stock.corner,
+        stock.cell,
+        np.ascontiguousarray(tips),
+        body,
+        found,
+    )
+    return ~found
 
 
 def _widened(rows: Floats, radius: float, more: float) -> Floats:
@@ -172,7 +217,7 @@ def _pieces(one: Pass, blocked: Ints) -> list[Pass]:
 
 
 def _lower(stock: PlanningStock, one: Pass, tool: Tool) -> None:
-    """Take a pass off a centred working copy."""
+    """Take off a centred working copy what the flutes cut on a pass."""
     starts, ends = (np.ascontiguousarray(v) for v in (one.tip[:-1], one.tip[1:]))
     heightfield.zmap_cut(
         stock.field,
@@ -182,6 +227,7 @@ def _lower(stock: PlanningStock, one: Pass, tool: Tool) -> None:
         ends,
         tool.radius + heightfield.HALF_DIAGONAL * stock.cell,
         tool.corner_radius,
+        tool.flute_length,
         np.empty((len(starts), 2)),
     )
 

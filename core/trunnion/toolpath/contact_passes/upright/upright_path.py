@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Protocol
 
+from trunnion.findings import Finding
+from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import Progress
-from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.linking.link_passes import as_cut, joined
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.upright.fixed_axis import UprightPasses
@@ -46,14 +49,37 @@ def upright_path(
 ) -> Planned:
     """Return the motions over `passes`, those that were `made` in the order that a strategy wants, and findings on what these leave."""
     stepover = stepover_on_plane(tool.corner_radius, drive.height)
-    clear, free, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     parameters = LinkParameters(
         stepover=stepover,
         safety=settings.safety,
         lead_radius=settings.lead_radius,
         order=order,
         reversing=reversing,
-        free_tips=free,
     )
-    path = linked(clear, drive, tool, data, stock, setup, parameters, progress)
+    path, blocked = linked_without_contact(
+        passes, stepover, drive, tool, data, stock, setup, parameters, progress
+    )
     return Planned(path=path, findings=(*made.remaining_findings(drive, tool, stepover), *blocked))
+
+
+def linked_without_contact(
+    passes: Sequence[Pass],
+    stepover: float,
+    drive: SurfaceDrive,
+    tool: Tool,
+    data: CuttingData,
+    stock: PlanningStock,
+    setup: Setup,
+    parameters: LinkParameters,
+    progress: Progress,
+) -> tuple[Toolpath, tuple[Finding, ...]]:
+    """Return the toolpath over what of passes, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes, and a
+    finding of the area that is left.
+
+    What stands beside a pass depends on those before it: passes are put in order first.
+    """
+    passes = as_cut(passes, drive, tool, parameters, progress.part(0.0, 0.2))
+    clear, along, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
+    parameters = replace(parameters, pass_stock=along)
+    path = joined(clear, drive, tool, data, stock, setup, parameters, progress.part(0.2, 1.0))
+    return path, blocked
