@@ -10,7 +10,7 @@ import pytest
 from programs import LINE, RAPID, path_of
 from surface_drives import DATA, driven, grid, joined, roughed
 from trunnion.geometry.kernels.heightfield import zmap_meets, zmap_meets_reference
-from trunnion.model.motion.toolpath import Mark
+from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.contact_passes.linking.link_passes import joined as joined_passes
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
@@ -275,6 +275,28 @@ def test_no_link_goes_through_what_only_later_passes_cut():
         across = np.abs(links[:, 1] - 15.0) < 1.5
         # Cut away before, nothing of it is in the way.
         assert bool((across & (links[:, 2] < 1.0)).any()) is bool(earlier)
+
+
+def test_a_tool_is_fed_out_past_what_stands_round_it_where_its_pass_ends():
+    """Beyond the pass's end stock stands 2.5 mm high, no higher than the flutes are long: the lead goes into it, no rapid up from there."""
+    drive, setup, stock = trench(30.0)
+    x, y = (
+        stock.corner[k] + (np.arange(n) + 0.5) * stock.cell
+        for k, n in enumerate(stock.heights.shape)
+    )
+    heights = stock.heights.copy()
+    heights[x > 20.0] = 2.5
+    heights[:, y > 25.0] = 20.0
+    stock = replace(stock, field=heights)
+    passes = [run_of(2.0, 28.0, 25.5), run_of(2.0, 20.0, 15.0)]
+    kept, beside, _ = without_stock_contact(passes, drive, SLENDER, stock, 0.5, NO_PROGRESS)
+    assert [p.tip[0, 1] for p in kept] == [15.0]
+    parameters = LinkParameters(stepover=0.5, lead_radius=1.0, pass_stock=beside)
+    made = joined_passes(kept, drive, SLENDER, DATA, stock, setup, parameters)
+    out = int(np.flatnonzero(made.mark == Mark.CUT)[-1]) + 1
+    fed = made.position[out:][made.motion[out:] != Motion.RAPID]
+    assert fed[-2, 2] == pytest.approx(1.0) and fed[-1, 2] == pytest.approx(2.5)
+    assert (fed[-2:, :2] == fed[-1, :2]).all() and fed[-1, 0] > 20.5
 
 
 @pytest.mark.parametrize("order", ["given", "nearest"])
