@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from trunnion.geometry.plane.plan_area import plan_area_above, tiled
+from trunnion.geometry.plane.plan_area import _cut_off, plan_area_above, tiled
 
 BASE = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0], [0.0, 10.0, 0.0]])
 TIP = np.array([5.0, 5.0, 10.0])
@@ -62,3 +62,36 @@ def test_pieces_joined_tile_by_tile_cover_what_they_covered(z: float, lean: floa
 def test_pieces_that_overlap_stay_as_they_are() -> None:
     pieces = np.asarray(shapely.polygons(SIDES[:, :, :2] + np.arange(4)[:, None, None]))
     assert sorted(shapely.area(tiled(pieces, np.ones(4, bool)))) == sorted(shapely.area(pieces))
+
+
+def test_triangles_that_cross_a_height_are_joined_above_it() -> None:
+    """The halves of triangles meet where they were cut; of a roof's two sides none is left apart."""
+    corners = dome(40, 0.0)
+    crossing = corners[(corners[:, :, 2].min(axis=1) < 4.0) & (corners[:, :, 2].max(axis=1) > 4.0)]
+    cut = _cut_off(crossing, 4.0)
+    assert len(cut) > 50
+    joined = tiled(cut, np.ones(len(cut), bool))
+    assert len(joined) < 0.2 * len(cut)
+    assert shapely.area(joined).sum() == pytest.approx(shapely.area(cut).sum(), rel=1e-9)
+
+
+@pytest.mark.parametrize("z", [0.5, 5.0, 9.5])
+def test_upright_walls_add_nothing_to_what_they_carry_and_all_they_have_alone(z: float) -> None:
+    low, high = BASE, BASE + [0.0, 0.0, 10.0]
+    after = [np.roll(v, -1, axis=0) for v in (low, high)]
+    walls = np.concatenate(
+        [np.stack([low, after[0], after[1]], axis=1), np.stack([low, after[1], high], axis=1)]
+    )
+    lid = np.stack([high[[0, 0]], high[[1, 2]], high[[2, 3]]], axis=1)
+    whole, bare = plan_area_above(np.concatenate([walls, lid]), z), plan_area_above(walls, z)
+    assert 100.0 <= whole.area < (10.0 + 2.0 * EVENED) ** 2
+    assert 0.0 < bare.area < 80.0 * EVENED
+
+
+def test_of_pieces_that_overlap_in_one_place_the_others_are_joined() -> None:
+    corners = dome(40, 0.0)
+    pieces = np.asarray(shapely.polygons(corners[:, :, :2]))
+    doubled = np.concatenate([pieces, pieces[1600:1601]])
+    joined = tiled(doubled, np.ones(len(doubled), bool))
+    assert len(joined) < 0.1 * len(doubled)
+    assert shapely.area(shapely.union_all(joined)) == pytest.approx(400.0)

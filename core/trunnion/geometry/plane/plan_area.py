@@ -15,6 +15,8 @@ LAP, EVEN = 1e-3, 0.02
 """mm: how far pieces of an area lap over one another, and how far its rim is evened."""
 TILE, MOST, FITS = 100.0, 200.0, 1e-9
 """Triangles that are joined at once, tiles along an area, and by what share of its area what is joined may be off."""
+FEW = 8
+"""Pieces that are not looked at in halves where they can't be joined."""
 
 
 def plan_area_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
@@ -30,11 +32,23 @@ def plan_area_above(corners: Floats, z: float, grown: float = 0.0) -> Region:
         [np.atleast_1d(shapely.polygons(corners[whole][:, :, :2])), _cut_off(corners[~whole], z)]
     )
     facing = np.concatenate([_signed_areas(corners[whole]), _signed_areas(corners[~whole])])
-    # Each is grown by itself: then neighbours overlap, where they would only touch along an edge that is none the same.
-    area = shapely.union_all(shapely.buffer(tiled(pieces, facing >= 0.0), grown + LAP, quad_segs=1))
+    is_thin = shapely.area(pieces) < tolerance.AREA
+    area = _grown_union(tiled(pieces[~is_thin], facing[~is_thin] >= 0.0), grown + LAP)
+    # Upright faces are lines seen from above, most of them on the rim of what is wide there.
+    shapely.prepare(area)
+    beside = pieces[is_thin]
+    beside = beside[~shapely.covers(area, beside)]
+    if len(beside):
+        area = shapely.union(area, _grown_union(beside, grown + LAP))
     return region_of(
         shapely.simplify(shapely.buffer(area, EVEN, join_style="mitre", mitre_limit=2.0), EVEN)
     )
+
+
+def _grown_union(pieces: NDArray[np.object_], grown: float) -> shapely.Geometry:
+    """Return the union of pieces (n,), each grown by itself: then neighbours overlap, where they would only touch along edges that are not
+    quite the same."""
+    return shapely.union_all(shapely.buffer(pieces, grown, quad_segs=1))
 
 
 def tiled(pieces: NDArray[np.object_], facing: Bools) -> NDArray[np.object_]:
@@ -56,10 +70,27 @@ def tiled(pieces: NDArray[np.object_], facing: Bools) -> NDArray[np.object_]:
         column, row = np.floor((middle - low) / edge).astype(np.int64).T
         order = np.lexsort((row, column))
         ends = np.flatnonzero(np.diff(column[order]) | np.diff(row[order])) + 1
-        for tile in np.split(mine[order], ends):
-            joined = _joined(pieces[tile], float(area[tile].sum()))
-            found.append(pieces[tile] if joined is None else np.array([joined]))
+        for tile in np.split(order, ends):
+            found += _joined_by_halves(pieces[mine[tile]], area[mine[tile]], middle[tile])
     return np.concatenate(found)
+
+
+def _joined_by_halves(
+    pieces: NDArray[np.object_], area: Floats, middle: Floats
+) -> list[NDArray[np.object_]]:
+    """Return pieces joined along shared edges, given their areas (n,) and middles (n, 2); where they can't be, those of each half are, and
+    so on, down to `FEW`, which stay as they are: only pieces beside the place where edges do not fit are kept apart."""
+    joined = _joined(pieces, float(area.sum()))
+    if joined is not None:
+        return [np.array([joined])]
+    if len(pieces) <= FEW:
+        return [pieces]
+    order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
+    return [
+        one
+        for half in np.array_split(order, 2)
+        for one in _joined_by_halves(pieces[half], area[half], middle[half])
+    ]
 
 
 def _joined(pieces: NDArray[np.object_], area: float) -> shapely.Geometry | None:
@@ -101,8 +132,10 @@ def _cut_off(corners: Floats, z: float) -> NDArray[np.object_]:
     upper = np.take_along_axis(above, alone[:, None], axis=1)[:, 0]
 
     def crossing(other: Floats) -> Floats:
-        share = (z - first[:, 2]) / (other[:, 2] - first[:, 2])
-        return np.asarray(first + share[:, None] * (other - first))
+        # From the lower corner up in both triangles beside an edge: then they meet there to the last bit and can be joined.
+        low, high = np.where(upper[:, None], other, first), np.where(upper[:, None], first, other)
+        share = (z - low[:, 2]) / (high[:, 2] - low[:, 2])
+        return np.asarray(low + share[:, None] * (high - low))
 
     one, two = crossing(second), crossing(third)
     tips = np.stack([first, one, two], axis=1)[upper, :, :2]

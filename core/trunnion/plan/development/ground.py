@@ -15,7 +15,7 @@ from trunnion.geometry.development import Development
 from trunnion.geometry.mesh import Mesh
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.plan_area import plan_area_above
-from trunnion.geometry.plane.region import Region, union_all
+from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.blank import Blank
 from trunnion.model.tool import Tool
 from trunnion.progress import NO_PROGRESS, Progress
@@ -40,6 +40,8 @@ RELIEF = 0.099
 """mm on the radius by which a neck is thinner than its cutter, at least, to go along a finished wall."""
 END_STEPS = 2.0
 """Steps between places along the straight lines within which of an end the blank is that of what stands beside the ground."""
+HALVINGS = 12
+"""Times that the height of what stands on ground is halved at most: most of its triangles are those of fillets, close to the ground."""
 TURNS = (0.0, 1.0, 2.7)
 """rad about the axis at which a blank must look the same to count as round."""
 
@@ -50,20 +52,36 @@ class GroundObstacle:
 
     corners: Floats
     closed: bool
-    _upper: list[Region] = field(init=False, repr=False, default_factory=list)
+    _known: dict[int, Region] = field(init=False, repr=False, default_factory=dict)
 
     def over(self, z: float) -> Region:
         """Return the plane's area over which they reach higher than a height."""
-        middle = 0.5 * float(self.corners[:, :, 2].max(initial=0.0))
-        upper = self.corners[:, :, 2].min(axis=1) >= middle
-        if z >= middle or not upper.any():
-            area = plan_area_above(self.corners, z, GROWN)
-        else:
-            # What is wholly in the upper half is over every lower height: its area is worked out once.
-            if not self._upper:
-                self._upper.append(plan_area_above(self.corners[upper], middle, GROWN))
-            area = self._upper[0].union(plan_area_above(self.corners[~upper], z, GROWN))
+        low, top = self.corners[:, :, 2].min(axis=1), float(self.corners[:, :, 2].max(initial=0.0))
+        halvings = _halvings(z, top)
+        lower = low < top * 0.5**halvings if halvings else np.ones(len(low), dtype=bool)
+        area = self._above(halvings, low, top).union(plan_area_above(self.corners[lower], z, GROWN))
         return area.holes_filled() if self.closed and area else area
+
+    def _above(self, halvings: int, low: Floats, top: float) -> Region:
+        """Return the area of the triangles, given how low (t,) they come, that lie wholly above their top halved so often: those above half
+        of it, and so on down, each lot worked out once. It depends on no height that was asked for before."""
+        if halvings == 0:
+            return EMPTY_REGION
+        if halvings not in self._known:
+            level = top * 0.5**halvings
+            some = low >= level
+            if halvings > 1:
+                some &= low < 2.0 * level
+            found = plan_area_above(self.corners[some], level, GROWN)
+            self._known[halvings] = self._above(halvings - 1, low, top).union(found)
+        return self._known[halvings]
+
+
+def _halvings(z: float, top: float) -> int:
+    """Return how often a top can be halved without coming below a height, up to `HALVINGS`."""
+    if z <= 0.0 < top:
+        return HALVINGS
+    return min(int(math.log2(top / z)), HALVINGS) if 0.0 < z < top else 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
