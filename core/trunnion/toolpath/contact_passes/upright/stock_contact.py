@@ -58,7 +58,7 @@ class _PassStock:
 
     def tops(self, tips: Floats, cut: Ints) -> Floats:
         found = np.full(len(tips), -np.inf)
-        # Of cells that it touches, those with their middle within the radius: those that the cutter has cut.
+        # A disc smaller by half a diagonal touches no cell with its middle beyond the radius: such cells are never cut.
         radius = max(self.tool.radius - heightfield.HALF_DIAGONAL * self.stock.cell, 0.0)
         for stock, rows in self._moments(cut):
             found[rows] = [stock.height(tip, tip, radius) for tip in tips[rows]]
