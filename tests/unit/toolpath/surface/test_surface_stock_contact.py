@@ -12,7 +12,7 @@ from surface_drives import DATA, driven, grid, joined, roughed
 from trunnion.geometry.kernels.heightfield import zmap_meets, zmap_meets_reference
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.progress import NO_PROGRESS
-from trunnion.toolpath.contact_passes.linking.link_passes import joined as joined_passes
+from trunnion.toolpath.contact_passes.linking.link_passes import linked_in_order
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import UPRIGHT, Pass
 from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
@@ -221,7 +221,7 @@ def test_leads_do_not_go_on_into_what_the_pass_ends_before(backwards):
     assert 18.0 < near <= 19.3
     parameters = LinkParameters(stepover=0.5, lead_radius=1.0)
     blind, seeing = (
-        joined_passes(kept, drive, slim, DATA, stock, setup, replace(parameters, pass_stock=f))
+        linked_in_order(kept, drive, slim, DATA, stock, setup, replace(parameters, pass_stock=f))
         for f in (None, beside)
     )
     low = [p.position[p.position[:, 2] < 15.0, 0] for p in (blind, seeing)]
@@ -251,7 +251,7 @@ def test_no_link_goes_through_what_stands_between_the_ends_of_two_passes():
     assert len(kept) == 2 and np.allclose(kept[0].tip[-1, 0], kept[1].tip[0, 0], atol=0.3)
     parameters = LinkParameters(stepover=0.7, lead_radius=0.0)
     blind, seeing = (
-        joined_passes(kept, drive, slim, DATA, stock, setup, replace(parameters, pass_stock=f))
+        linked_in_order(kept, drive, slim, DATA, stock, setup, replace(parameters, pass_stock=f))
         for f in (None, beside)
     )
     assert (blind.mark == Mark.LINK).any() and not (seeing.mark == Mark.LINK).any()
@@ -268,7 +268,7 @@ def test_no_link_goes_through_what_only_later_passes_cut():
     for later, earlier in ((stairs, []), ([], stairs)):
         passes = [*earlier, *first, *later]
         kept, beside, _ = without_stock_contact(passes, drive, slim, stock, 0.7, NO_PROGRESS)
-        made = joined_passes(
+        made = linked_in_order(
             kept, drive, slim, DATA, stock, setup, replace(parameters, pass_stock=beside)
         )
         links = made.position[made.mark == Mark.LINK]
@@ -292,7 +292,7 @@ def test_a_tool_is_fed_out_past_what_stands_round_it_where_its_pass_ends():
     kept, beside, _ = without_stock_contact(passes, drive, SLENDER, stock, 0.5, NO_PROGRESS)
     assert [p.tip[0, 1] for p in kept] == [15.0]
     parameters = LinkParameters(stepover=0.5, lead_radius=1.0, pass_stock=beside)
-    made = joined_passes(kept, drive, SLENDER, DATA, stock, setup, parameters)
+    made = linked_in_order(kept, drive, SLENDER, DATA, stock, setup, parameters)
     out = int(np.flatnonzero(made.mark == Mark.CUT)[-1]) + 1
     fed = made.position[out:][made.motion[out:] != Motion.RAPID]
     assert fed[-2, 2] == pytest.approx(1.0) and fed[-1, 2] == pytest.approx(2.5)

@@ -44,23 +44,25 @@ def linked(
     progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
     """Return the toolpath that cuts all passes, in the cutting frame; it begins and ends at the setup's clearance height."""
-    passes = as_cut(passes, drive, tool, parameters, progress.part(0.0, 0.2))
-    return joined(passes, drive, tool, data, stock, setup, parameters, progress.part(0.2, 1.0))
+    passes = extended_in_order(passes, drive, tool, parameters, progress.part(0.0, 0.2))
+    return linked_in_order(
+        passes, drive, tool, data, stock, setup, parameters, progress.part(0.2, 1.0)
+    )
 
 
-def as_cut(
+def extended_in_order(
     passes: Sequence[Pass],
     drive: SurfaceDrive,
     tool: Tool,
     parameters: LinkParameters,
     progress: Progress = NO_PROGRESS,
 ) -> list[Pass]:
-    """Return the passes as they are cut, in their order, run on past free rims."""
+    """Return the passes run on past free rims, in the order that they are cut."""
     whole = extended([p for p in passes if len(p) > 1], drive, tool, parameters.query)
     return ordered(whole, parameters, progress) if whole else []
 
 
-def joined(
+def linked_in_order(
     passes: Sequence[Pass],
     drive: SurfaceDrive,
     tool: Tool,
@@ -70,7 +72,7 @@ def joined(
     parameters: LinkParameters,
     progress: Progress = NO_PROGRESS,
 ) -> Toolpath:
-    """Return the toolpath that cuts passes as they are, one after the other (`linked`)."""
+    """Return the toolpath that cuts passes as they are and in this order, without running them on (`linked`)."""
     if not passes:
         return EMPTY
     # Leads and links of all passes at once: drops on the skin are cheap only in batches.

@@ -48,12 +48,13 @@ class _PassStock:
     stock: PlanningStock
     passes: Sequence[Pass]
     tool: Tool
+    progress: Progress
 
     def is_free(self, tips: Floats, cut: Ints) -> Bools:
-        body = _body(self.tool, self.stock)
+        body, top = _body(self.tool, self.stock), float(self.stock.field.max())
         found = np.ones(len(tips), dtype=bool)
         for stock, rows in self._moments(cut):
-            found[rows] = _is_free_of(stock, tips[rows], body)
+            found[rows] = _is_free_finely(stock, top, tips[rows], body)
         return found
 
     def tops(self, tips: Floats, cut: Ints) -> Floats:
@@ -68,6 +69,7 @@ class _PassStock:
         """Yield the stock when so many passes (k,) are cut, with the rows that ask for it, moment by moment."""
         stock, done = self.stock.working(), 0
         for moment in np.unique(cut).tolist():
+            self.progress.check()
             for one in self.passes[done:moment]:
                 _lower(stock, one, self.tool)
             done = moment
@@ -100,6 +102,8 @@ def without_stock_contact(
     )
     progress.aside(partial(_take_part_off, before, drive, tips[doubtful], tool))
     fine, body = before.working(), _body(tool, before)
+    # Passes only lower it.
+    top = float(fine.field.max())
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
     kept, left, over = list[Pass](), 0.0, 0.0
     for k, one in enumerate(passes):
@@ -108,7 +112,7 @@ def without_stock_contact(
         met = np.zeros(starts[k + 1] - starts[k], dtype=bool)
         some = np.flatnonzero(doubtful[of])
         if len(some):
-            met[some] = ~_is_free_of(fine, tips[of][some], body)
+            met[some] = ~_is_free_finely(fine, top, tips[of][some], body)
         pieces = [one]
         if met.any():
             pieces = _pieces(one, segment[of][met])
@@ -117,7 +121,8 @@ def without_stock_contact(
         for piece in pieces:
             _lower(fine, piece, tool)
         kept += pieces
-    return kept, _PassStock(before, kept, tool), _findings(left * stepover, over, drive, tool)
+    along = _PassStock(before, kept, tool, progress)
+    return kept, along, _findings(left * stepover, over, drive, tool)
 
 
 def _body(tool: Tool, stock: PlanningStock) -> Floats:
@@ -126,18 +131,11 @@ def _body(tool: Tool, stock: PlanningStock) -> Floats:
     return _widened(rows, tool.radius, heightfield.HALF_DIAGONAL * stock.cell)
 
 
-def _is_free_of(stock: PlanningStock, tips: Floats, body: Floats) -> Bools:
-    """Return at which tips (k, 3) a body of cones (r, 4) meets nothing of a stock."""
+def _is_free_finely(stock: PlanningStock, top: float, tips: Floats, body: Floats) -> Bools:
+    """Return at which tips (k, 3) a body of cones (r, 4) meets nothing of a stock in fine cells, which is nowhere higher than `top`."""
     found = np.zeros(len(tips), dtype=bool)
-    field = stock.field
     heightfield.zmap_meets(
-        field,
-        float(field.max()),
-        *stock.corner,
-        stock.cell,
-        np.ascontiguousarray(tips),
-        body,
-        found,
+        stock.field, top, *stock.corner, stock.cell, np.ascontiguousarray(tips), body, found
     )
     return ~found
 

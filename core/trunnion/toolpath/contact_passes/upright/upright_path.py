@@ -14,7 +14,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import Progress
-from trunnion.toolpath.contact_passes.linking.link_passes import as_cut, joined
+from trunnion.toolpath.contact_passes.linking.link_passes import extended_in_order, linked_in_order
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.upright.fixed_axis import UprightPasses
@@ -78,8 +78,10 @@ def linked_without_contact(
 
     What stands beside a pass depends on those before it: passes are put in order first.
     """
-    passes = as_cut(passes, drive, tool, parameters, progress.part(0.0, 0.2))
+    passes = extended_in_order(passes, drive, tool, parameters, progress.part(0.0, 0.2))
     clear, along, blocked = without_stock_contact(passes, drive, tool, stock, stepover, progress)
     parameters = replace(parameters, pass_stock=along)
-    path = joined(clear, drive, tool, data, stock, setup, parameters, progress.part(0.2, 1.0))
+    path = linked_in_order(
+        clear, drive, tool, data, stock, setup, parameters, progress.part(0.2, 1.0)
+    )
     return path, blocked
