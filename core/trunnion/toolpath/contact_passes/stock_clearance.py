@@ -26,10 +26,15 @@ from trunnion.toolpath.stock.remaining import NEAR
 STOCK_SHARE, LEAST_STOCK = 2.0, NEAR
 """How much material near the part tools are kept clear of where there is space: times the depth of cut, and mm at least. Earlier cutters
 leave more in corners than on faces."""
+THICKER = (4.0 * tolerance.HOLDER_CLEARANCE, tolerance.HOLDER_CLEARANCE)
+"""mm that a tool is taken thicker by on its moves: first by more, which few poses tell nearly everywhere."""
 PIECE = math.radians(10.0)
 """Largest turn of the axis in one piece of a rapid's way."""
 LIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 """mm along its axis that a tool is moved off at feed until a rapid touches nothing: the first of them that does, or the last."""
+
+Cones = Sequence[tuple[float, float, float, float]]
+"""A body as cones (z0, r0, z1, r1) from the tip up, mm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +56,13 @@ class StockClearance:
         return self.beyond is not None and not self.beyond.is_empty
 
     def with_stock(self, query: ClearanceQuery) -> ClearanceQuery:
-        """Return a query that demands of a pose what another one does, and that nothing above the flutes is in stock."""
+        """Return a query that demands of a pose, or all along a move, what another one does, and that nothing above the flutes is in
+        stock."""
         beyond = self.beyond
         if beyond is None:
             return query
-        rows = thickened(self.tool, tolerance.HOLDER_CLEARANCE).profile()
+        bodies = [(t, thickened(self.tool, t).profile()) for t in THICKER]
+        rows = bodies[-1][1]
 
         def both(
             tip: Floats,
@@ -69,6 +76,9 @@ class StockClearance:
             some = np.flatnonzero(clear)
             starts = [None if v is None else v[some] for v in (start_tip, start_axis)]
             clear[some] = query(tip[some], axis[some], start_tip=starts[0], start_axis=starts[1])
+            if start_tip is not None and clear.any():
+                moves = _Moves(start_tip, axis if start_axis is None else start_axis, tip, axis)
+                clear &= self._is_free_along(moves, clear, bodies)
             return clear
 
         return both
@@ -114,8 +124,8 @@ class StockClearance:
     ) -> Bools:
         """Return which rapids (k,) from tips (k, 3) with axes (k, 3) to others keep the thickness off everything all along: the tip goes
         straight, the axis turns evenly."""
-        rapids = _Rapids(start_tip, start_axis, tip, axis)
-        way, tips, axes = rapids.poses(np.maximum(np.ceil(rapids.turn / PIECE), 1.0))
+        rapids = _Moves(start_tip, start_axis, tip, axis)
+        way, tips, axes = rapids.poses(np.ceil(rapids.turn / PIECE))
         # A grown tool's tip is lower by the thickness; within a piece that goes straight too, or nearly so.
         low, first = tips - self.thickness * axes, np.flatnonzero(np.diff(way) == 0)
         is_free = self._grown_query(
@@ -123,12 +133,26 @@ class StockClearance:
         )
         clear = np.ones(len(tip), dtype=bool)
         clear[way[first[~is_free]]] = False
-        if self.beyond is not None and not self.beyond.is_empty and clear.any():
-            # The body is thicker by the thickness: no position of it may go twice as far unseen.
-            rows = np.flatnonzero(clear)
-            moved = rapids.travel[rows] + self.tool.gauge_length * rapids.turn[rows]
-            way, tips, axes = rapids.of(rows).poses(np.ceil(moved / (2.0 * self.thickness)))
-            clear[rows[way[~self.beyond.is_free(self._body, tips, axes)]]] = False
+        if clear.any():
+            clear &= self._is_free_along(rapids, clear, [(self.thickness, self._body)])
+        return clear
+
+    def _is_free_along(
+        self, moves: _Moves, some: Bools, bodies: Sequence[tuple[float, Cones]]
+    ) -> Bools:
+        """Return which of some moves (k,) keep the tool out of what stands beyond all along; of the others, all do.
+
+        `bodies` are the tool thicker by some mm, from the thickest on: each is asked in the middles of pieces in which no position of the
+        tool goes farther than that from where it is there, and what is not clear with one with the next."""
+        clear = np.ones(len(some), dtype=bool)
+        if self.beyond is None or self.beyond.is_empty:
+            return clear
+        left = np.flatnonzero(some)
+        for thicker, body in bodies:
+            moved = moves.travel[left] + self.tool.gauge_length * moves.turn[left]
+            way, tips, axes = moves.of(left).middles(np.ceil(moved / (2.0 * thicker)))
+            left = left[np.unique(way[~self.beyond.is_free(body, tips, axes)])]
+        clear[left] = False
         return clear
 
     @cached_property
@@ -137,11 +161,11 @@ class StockClearance:
         return self.drive.query_for(grown(self.tool, self.thickness))
 
     @cached_property
-    def _body(self) -> Sequence[tuple[float, float, float, float]]:
+    def _body(self) -> Cones:
         return _whole_body(self.tool, self.thickness)
 
 
-class _Rapids:
+class _Moves:
     """Straight ways of tips (k, 3) whose axes (k, 3) turn evenly: how far they `travel`, mm, and `turn`, rad (k,)."""
 
     def __init__(self, start_tip: Floats, start_axis: Floats, tip: Floats, axis: Floats) -> None:
@@ -149,19 +173,32 @@ class _Rapids:
         self.travel = np.linalg.norm(tip - start_tip, axis=1)
         self.turn = angle_between(start_axis, axis)
 
-    def of(self, rows: Ints) -> _Rapids:
-        """Return some of the rapids."""
-        return _Rapids(*(v[rows] for v in self._ends))
+    def of(self, rows: Ints) -> _Moves:
+        """Return some of the moves."""
+        return _Moves(*(v[rows] for v in self._ends))
 
     def poses(self, pieces: Floats) -> tuple[Ints, Floats, Floats]:
         """Return the poses that part each way in so many equal pieces (k,), its ends among them: its number (p,), tips and axes (p, 3)."""
-        count = pieces.astype(np.int64) + 1
-        way = np.repeat(np.arange(len(count)), count)
-        number = np.arange(len(way)) - np.repeat(np.cumsum(count) - count, count)
-        share = number / np.maximum(count - 1, 1)[way]
+        count = np.maximum(pieces, 1.0).astype(np.int64)
+        way, number = _numbered(count + 1)
+        return self._at(way, number / count[way])
+
+    def middles(self, pieces: Floats) -> tuple[Ints, Floats, Floats]:
+        """Return the poses in the middles of so many equal pieces (k,) of each way: its number (p,), tips and axes (p, 3)."""
+        count = np.maximum(pieces, 1.0).astype(np.int64)
+        way, number = _numbered(count)
+        return self._at(way, (number + 0.5) / count[way])
+
+    def _at(self, way: Ints, share: Floats) -> tuple[Ints, Floats, Floats]:
         start_tip, start_axis, tip, axis = (v[way] for v in self._ends)
         tips = start_tip + share[:, None] * (tip - start_tip)
         return way, tips, slerp(start_axis, axis, share)
+
+
+def _numbered(count: Ints) -> tuple[Ints, Ints]:
+    """Return for `count` (k,) items of each of k things which one (p,) each is of, and its number (p,) there."""
+    of = np.repeat(np.arange(len(count)), count)
+    return of, np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
 
 
 def grown(tool: Tool, thickness: float) -> Tool:
@@ -183,8 +220,8 @@ def grown(tool: Tool, thickness: float) -> Tool:
     )
 
 
-def _whole_body(tool: Tool, wider: float) -> Sequence[tuple[float, float, float, float]]:
-    """Return a whole tool as cones (z0, r0, z1, r1) from the tip up, wider by some mm all round and nowhere slimmer than below."""
+def _whole_body(tool: Tool, wider: float) -> Cones:
+    """Return a whole tool as cones from the tip up, wider by some mm all round and nowhere slimmer than below."""
     rows, widest = [(-wider, tool.radius, tool.flute_length, tool.radius)], tool.radius
     for z0, r0, z1, r1 in tool.profile():
         rows.append((z0, max(r0, widest), z1, max(r1, widest)))

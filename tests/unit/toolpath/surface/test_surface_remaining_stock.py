@@ -199,6 +199,38 @@ def test_a_leaning_tool_keeps_its_shank_out_of_stock_that_stands():
     assert query(tip, axes).tolist() == [True, False]
 
 
+def post():
+    """Return what stands of the blank in a post of 2 by 4 mm about (15, 10)."""
+    stock = PlanningStock.of(BLANK, SETUP)
+    heights = np.zeros_like(stock.heights)
+    x, y = (
+        stock.corner[k] + (np.arange(n) + 0.5) * stock.cell for k, n in enumerate(heights.shape)
+    )
+    heights[np.ix_(np.abs(x - 15.0) < 1.0, np.abs(y - 10.0) < 2.0)] = 10.0
+    return standing_below(replace(stock, field=heights))
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "is_free"),
+    [
+        (((5.0, 10.0, 0.5), UPRIGHT), ((25.0, 10.0, 0.5), UPRIGHT), False),
+        (((5.0, 2.0, 0.5), UPRIGHT), ((25.0, 2.0, 0.5), UPRIGHT), True),
+        # Its tip stays where it is: the axis turns past the post, or away from it.
+        (((8.0, 10.0, 0.5), (0.4, 0.7, 0.6)), ((8.0, 10.0, 0.5), (0.4, -0.7, 0.6)), False),
+        (((8.0, 10.0, 0.5), (-0.4, 0.7, 0.6)), ((8.0, 10.0, 0.5), (-0.4, -0.7, 0.6)), True),
+    ],
+)
+def test_a_leaning_tool_keeps_its_shank_out_of_stock_between_two_poses(start, end, is_free):
+    query = clearance(post()).with_stock(lambda tip, axis, **_: np.ones(len(tip), bool))
+    (tip, axis), (end_tip, end_axis) = (
+        (np.array([p]), np.array([a]) / np.linalg.norm(a)) for p, a in (start, end)
+    )
+    for one in ((tip, axis), (end_tip, end_axis)):
+        assert query(*one).all()
+    found = query(end_tip, end_axis, start_tip=tip, start_axis=axis)
+    assert found.tolist() == [is_free]
+
+
 def test_poses_are_asked_for_from_the_safest_to_those_clear_of_the_part_alone():
     whole = standing_below(cleared(0.0, 10.0))
     widths, bare = [], lambda tip, axis, **_: np.ones(len(tip), bool)
