@@ -45,7 +45,7 @@ class PlanningStock:
     """A `field` of heights (nx, ny) mm in the setup frame of square cells of side `cell`; cell (0, 0) begins at `corner` (2,).
 
     `digest` is a short stable digest of the uncut field and everything that was cut from it. A `centred` field errs to neither side:
-    a cell is lowered where the cutter covers its middle. Loads are taken from it, and what is in a neck's way (`centred_finely`); safe
+    a cell is lowered where the cutter covers its middle. Loads are taken from it, and what is in a neck's way (`finely`); safe
     heights never. `widths` is the share of a cutter's radius that it clears up to the top of the stock: less than 1 over ground laid
     flat, where a straight body gets narrower upwards. `cuts` are the paths that were taken off it with their tools, in the order they
     were. `reads` takes down where it is looked at (`recorded`), which for one who takes the `heights` is everywhere; `field` alone is for
@@ -167,17 +167,23 @@ class PlanningStock:
             reads=None,
         )
 
-    def centred_finely(
-        self, low: Floats, high: Floats, cell: float, progress: Progress = NO_PROGRESS
+    def finely(
+        self,
+        low: Floats,
+        high: Floats,
+        cell: float,
+        progress: Progress = NO_PROGRESS,
+        *,
+        centred: bool = False,
     ) -> PlanningStock:
-        """Return a centred working copy of the part of the stock that a box from `low` to `high` (2,) touches, in cells of about a side
-        (mm): all that was cut is cut again. What was cut from elsewhere is known as well as the stock knows it."""
+        """Return a working copy of the part of the stock that a box from `low` to `high` (2,) touches, in cells of about a side (mm): all
+        that was cut is cut again. What was cut from elsewhere is known as well as the stock knows it."""
         cuts = self.exact_cuts
         near = self.cropped(low, high)
         side = max(cell, float(np.sqrt(near.field.size * near.cell**2 / MOST_CELLS)))
         parts = max(1, math.floor(near.cell / side + tolerance.PARAMETRIC))
         field = np.repeat(np.repeat(near.field, parts, axis=0), parts, axis=1)
-        made = replace(near, field=field, cell=near.cell / parts, centred=True, cuts=())
+        made = replace(near, field=field, cell=near.cell / parts, centred=centred, cuts=())
         corners = np.array(made.box())
         for path, tool in progress.each(cuts):
             around = tool.radius + made.cell

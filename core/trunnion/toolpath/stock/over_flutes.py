@@ -14,10 +14,10 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.kernels import heightfield
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.tool import Tool
-from trunnion.toolpath.stock.heightfield import ARC_CHORD, PlanningStock, cutting_chords
+from trunnion.toolpath.stock.column_cuts import ColumnCuts
+from trunnion.toolpath.stock.heightfield import ARC_CHORD, PlanningStock
 
 SPACING = 0.1
 """mm between points on the circle."""
@@ -31,7 +31,7 @@ class StockOverFlutes:
 
     stock: PlanningStock
     tool: Tool
-    _earlier: list[_Cuts] | None = field(default=None, init=False)
+    _earlier: list[ColumnCuts] | None = field(default=None, init=False)
 
     def may_be_there(self, tip: Floats) -> bool:
         """Return whether anything may stand over the flutes of the tool at a tip (3,), whatever its own path has cut."""
@@ -46,48 +46,16 @@ class StockOverFlutes:
         angle = 2.0 * math.pi * np.arange(count) / count
         points = tip[:2] + radius * np.column_stack([np.cos(angle), np.sin(angle)])
         uncut = self.stock.heights_at(points)
-        own = _Cuts.of(path, self.tool, self.stock.widths)
+        own = ColumnCuts.of(path, self.tool, self.stock.widths)
         over = tip[2] + self.tool.flute_length
         # Earlier cuts only lower what the own ones begin with: where these are enough, nobody asks for them.
         if (own.lowered(uncut, points) <= over).all():
             return -math.inf
         if self._earlier is None:
-            self._earlier = [_Cuts.of(p, t, self.stock.widths) for p, t in self.stock.exact_cuts]
+            self._earlier = [
+                ColumnCuts.of(p, t, self.stock.widths) for p, t in self.stock.exact_cuts
+            ]
         heights = reduce(
             lambda left, cuts: cuts.lowered(left, points), [*self._earlier, own], uncut
         )
         return float(heights[heights > over].max(initial=-math.inf))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Cuts:
-    """Straight cuts of a tool from `starts` to `ends` (n, 3), in their order."""
-
-    starts: Floats
-    ends: Floats
-    radius: float
-    corner_radius: float
-    flute_length: float
-
-    @staticmethod
-    def of(path: Toolpath, tool: Tool, widths: float) -> _Cuts:
-        starts, ends, _, error = cutting_chords(path, tool)
-        radius = widths * (tool.radius - error)
-        return _Cuts(starts, ends, radius, min(tool.corner_radius, radius), tool.flute_length)
-
-    def lowered(self, heights: Floats, points: Floats) -> Floats:
-        """Return the heights (k,) that the cuts leave of columns at points (k, 2)."""
-        low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
-        a, b = self.starts[:, :2], self.ends[:, :2]
-        near = ((np.maximum(a, b) > low) & (np.minimum(a, b) < high)).all(axis=1)
-        left = heights.copy()
-        heightfield.columns_cut(
-            left,
-            points,
-            self.starts[near],
-            self.ends[near],
-            self.radius,
-            self.corner_radius,
-            self.flute_length,
-        )
-        return left

@@ -2,7 +2,7 @@
 
 Roughing can't come everywhere: beside what it left a slender cutter may still touch the faces, with its flutes deep below the top of it.
 The planner's field of heights is higher than the stock: round every cut by a part of a cell, and by more beside walls, where cells are
-never cut whole. Positions where that is in the way are looked at again in finer cells, each as high as the stock in its middle.
+never cut whole. Positions where that is in the way are looked at again, in finer cells and more closely (`body_stock.py`).
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.choices import IN_STOCK
 from trunnion.toolpath.contact_passes.linking.parameters import PassStock
 from trunnion.toolpath.contact_passes.passes import Pass, spaced
+from trunnion.toolpath.contact_passes.upright.body_stock import BodyStock, CutStock
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 FINE = 0.25
@@ -43,35 +44,34 @@ SMALLEST_LEFTOVER = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _PassStock:
-    """Stock in fine cells beside passes of a tool that are cut in their order (`linking.parameters.PassStock`)."""
+    """Stock beside passes of a tool that are cut in their order (`linking.parameters.PassStock`)."""
 
-    stock: PlanningStock
+    stock: CutStock
     passes: Sequence[Pass]
     tool: Tool
     progress: Progress
 
     def is_free(self, tips: Floats, cut: Ints) -> Bools:
-        body, top = _body(self.tool, self.stock), float(self.stock.field.max())
         found = np.ones(len(tips), dtype=bool)
         for stock, rows in self._moments(cut):
-            found[rows] = _is_free_finely(stock, top, tips[rows], body)
+            found[rows] = stock.is_free(tips[rows])
         return found
 
     def tops(self, tips: Floats, cut: Ints) -> Floats:
         found = np.full(len(tips), -np.inf)
         # A disc smaller by half a diagonal touches no cell with its middle beyond the radius: such cells are never cut.
-        radius = max(self.tool.radius - heightfield.HALF_DIAGONAL * self.stock.cell, 0.0)
+        radius = max(self.tool.radius - heightfield.HALF_DIAGONAL * self.stock.centred.cell, 0.0)
         for stock, rows in self._moments(cut):
-            found[rows] = [stock.height(tip, tip, radius) for tip in tips[rows]]
+            found[rows] = [stock.centred.height(tip, tip, radius) for tip in tips[rows]]
         return found
 
-    def _moments(self, cut: Ints) -> Iterator[tuple[PlanningStock, Ints]]:
+    def _moments(self, cut: Ints) -> Iterator[tuple[BodyStock, Ints]]:
         """Yield the stock when so many passes (k,) are cut, with the rows that ask for it, moment by moment."""
-        stock, done = self.stock.working(), 0
+        stock, done = self.stock.beside(self.passes, self.tool), 0
         for moment in np.unique(cut).tolist():
             self.progress.check()
-            for one in self.passes[done:moment]:
-                _lower(stock, one, self.tool)
+            for k in range(done, moment):
+                stock.cut(k, slice(None))
             done = moment
             yield stock, np.flatnonzero(cut == moment)
 
@@ -98,12 +98,10 @@ def without_stock_contact(
     if not doubtful.any():
         return list(passes), None, ()
     before = progress.aside(
-        lambda own: stock.centred_finely(low, high, FINE, own), "Cutting the stock in finer cells"
+        lambda own: _cut_stock(stock, low, high, own), "Cutting the stock in finer cells"
     )
-    progress.aside(partial(_take_part_off, before, drive, tips[doubtful], tool))
-    fine, body = before.working(), _body(tool, before)
-    # Passes only lower it.
-    top = float(fine.field.max())
+    progress.aside(partial(_take_part_off, before.centred, drive, tips[doubtful], tool))
+    beside = before.beside(passes, tool)
     starts = np.searchsorted(owner, np.arange(len(passes) + 1))
     kept, left, over = list[Pass](), 0.0, 0.0
     for k, one in enumerate(passes):
@@ -112,41 +110,26 @@ def without_stock_contact(
         met = np.zeros(starts[k + 1] - starts[k], dtype=bool)
         some = np.flatnonzero(doubtful[of])
         if len(some):
-            met[some] = ~_is_free_finely(fine, top, tips[of][some], body)
-        pieces = [one]
+            met[some] = ~beside.is_free(tips[of][some])
+        moves, pieces = [slice(None)], [one]
         if met.any():
-            pieces = _pieces(one, segment[of][met])
+            moves, pieces = _pieces(one, segment[of][met])
             left += one.length - sum(p.length for p in pieces)
-            over = max(over, float(fine.field.max() - tips[of][met][:, 2].min()))
-        for piece in pieces:
-            _lower(fine, piece, tool)
+            over = max(over, float(beside.centred.field.max() - tips[of][met][:, 2].min()))
+        for some_moves in moves:
+            beside.cut(k, some_moves)
         kept += pieces
     along = _PassStock(before, kept, tool, progress)
     return kept, along, _findings(left * stepover, over, drive, tool)
 
 
-def _body(tool: Tool, stock: PlanningStock) -> Floats:
-    """Return the cones (r, 4) of a tool above its flutes, wider as far as the cells of a stock ask for."""
-    rows = np.array(tool.profile()).reshape(-1, 4)
-    return _widened(rows, tool.radius, heightfield.HALF_DIAGONAL * stock.cell)
-
-
-def _is_free_finely(stock: PlanningStock, top: float, tips: Floats, body: Floats) -> Bools:
-    """Return at which tips (k, 3) a body of cones (r, 4) meets nothing of a stock in fine cells, which is nowhere higher than `top`."""
-    found = np.zeros(len(tips), dtype=bool)
-    heightfield.zmap_meets(
-        stock.field, top, *stock.corner, stock.cell, np.ascontiguousarray(tips), body, found
+def _cut_stock(stock: PlanningStock, low: Floats, high: Floats, progress: Progress) -> CutStock:
+    """Return the stock in a box from `low` to `high` (2,)."""
+    return CutStock(
+        planned=stock,
+        centred=stock.finely(low, high, FINE, progress.part(0.0, 0.5), centred=True),
+        upper=stock.finely(low, high, FINE, progress.part(0.5, 1.0)),
     )
-    return ~found
-
-
-def _widened(rows: Floats, radius: float, more: float) -> Floats:
-    """Return the cones (r, 4) of a body wider by `more` (mm), as far as a cell's middle may be from what stands in it; where they are
-    thinner than the cutter no wider than that: it has been where they go."""
-    wide = rows.copy()
-    near = rows[:, [1, 3]]
-    wide[:, [1, 3]] = np.where(near >= radius, near + more, np.minimum(near + more, radius))
-    return wide
 
 
 def _around(stock: PlanningStock, tips: Floats, rows: Floats, tool: Tool) -> tuple[Floats, Floats]:
@@ -205,29 +188,14 @@ def _take_part_off(
     field[some] = -np.inf
 
 
-def _pieces(one: Pass, blocked: Ints) -> list[Pass]:
-    """Return the pieces of a pass without moves of it."""
+def _pieces(one: Pass, blocked: Ints) -> tuple[list[slice], list[Pass]]:
+    """Return the pieces of a pass without some moves of it: which moves each has, and itself."""
     free = np.ones(len(one) - 1, dtype=bool)
     free[blocked] = False
     edges = np.flatnonzero(np.diff(free.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
-    pieces = [one.of(slice(a, b + 1)) for a, b in edges.tolist()]
-    return [p for p in pieces if p.length >= SHORTEST]
-
-
-def _lower(stock: PlanningStock, one: Pass, tool: Tool) -> None:
-    """Take off a centred working copy what the flutes cut on a pass."""
-    starts, ends = (np.ascontiguousarray(v) for v in (one.tip[:-1], one.tip[1:]))
-    heightfield.zmap_cut(
-        stock.field,
-        *stock.corner,
-        stock.cell,
-        starts,
-        ends,
-        tool.radius + heightfield.HALF_DIAGONAL * stock.cell,
-        tool.corner_radius,
-        tool.flute_length,
-        np.empty((len(starts), 2)),
-    )
+    found = [(slice(a, b), one.of(slice(a, b + 1))) for a, b in edges.tolist()]
+    kept = [(moves, piece) for moves, piece in found if piece.length >= SHORTEST]
+    return [moves for moves, _ in kept], [piece for _, piece in kept]
 
 
 def _findings(area: float, over: float, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:

@@ -1,0 +1,107 @@
+"""Straight cuts in their order, and how high they leave columns of stock: at places, where a field of heights knows its cells alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.kernels import heightfield
+from trunnion.model.motion.toolpath import Toolpath
+from trunnion.model.tool import Tool
+from trunnion.toolpath.stock.heightfield import cutting_chords
+
+SQUARE = 2.0
+"""mm: side of the squares that cuts are looked up by."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ColumnCuts:
+    """Straight cuts of a flat, bull or ball end cutter from `starts` to `ends` (n, 3), in their order. Each takes off no more than its
+    flutes reach over."""
+
+    starts: Floats
+    ends: Floats
+    radius: float
+    corner_radius: float
+    flute_length: float
+
+    @staticmethod
+    def of(path: Toolpath, tool: Tool, widths: float) -> ColumnCuts:
+        """Return the cuts of a path; `widths` is the share of the cutter's radius that counts."""
+        starts, ends, _, error = cutting_chords(path, tool)
+        radius = widths * (tool.radius - error)
+        return ColumnCuts(starts, ends, radius, min(tool.corner_radius, radius), tool.flute_length)
+
+    def lowered(self, heights: Floats, points: Floats) -> Floats:
+        """Return the heights (k,) that the cuts leave of columns at points (k, 2) near each other."""
+        low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
+        a, b = self.starts[:, :2], self.ends[:, :2]
+        near = ((np.maximum(a, b) > low) & (np.minimum(a, b) < high)).all(axis=1)
+        return self._lowered(heights, points, np.flatnonzero(near))
+
+    def _lowered(self, heights: Floats, points: Floats, rows: Ints) -> Floats:
+        left = heights.copy()
+        heightfield.columns_cut(
+            left,
+            np.ascontiguousarray(points),
+            self.starts[rows],
+            self.ends[rows],
+            self.radius,
+            self.corner_radius,
+            self.flute_length,
+        )
+        return left
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ColumnCutGrid:
+    """Straight cuts that are looked up by squares of a plan with a lower corner (2,): those of square k are `rows` from first[k] on, in
+    their order."""
+
+    cuts: ColumnCuts
+    corner: Floats
+    shape: Ints
+    rows: Ints
+    first: Ints
+
+    @staticmethod
+    def of(cuts: ColumnCuts, low: Floats, high: Floats) -> ColumnCutGrid:
+        """Return what of cuts comes into a plan from `low` to `high` (2,)."""
+        shape = np.maximum(np.ceil((high - low) / SQUARE), 1.0).astype(np.int64)
+        a, b = cuts.starts[:, :2], cuts.ends[:, :2]
+        begin = np.floor((np.minimum(a, b) - cuts.radius - low) / SQUARE).astype(np.int64)
+        end = np.floor((np.maximum(a, b) + cuts.radius - low) / SQUARE).astype(np.int64) + 1
+        begin, end = np.maximum(begin, 0), np.minimum(end, shape)
+        wide = np.maximum(end - begin, 0)
+        count = wide.prod(axis=1)
+        row = np.repeat(np.arange(len(count)), count)
+        number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+        deep = np.maximum(wide[row, 1], 1)
+        square = (begin[row, 0] + number // deep) * shape[1] + begin[row, 1] + number % deep
+        order = np.argsort(square, kind="stable")
+        first = np.searchsorted(square[order], np.arange(shape.prod() + 1))
+        return ColumnCutGrid(cuts, low, shape, row[order], first)
+
+    def lowered(self, heights: Floats, points: Floats, done: Bools | None = None) -> Floats:
+        """Return the heights (k,) that the cuts leave of columns at points (k, 2) of the plan; of the cuts (n,) only those that are `done`
+        where that is given."""
+        left = heights.copy()
+        for square, some in self._squares(points):
+            rows = self.rows[self.first[square] : self.first[square + 1]]
+            if done is not None:
+                rows = rows[done[rows]]
+            if len(rows):
+                left[some] = self.cuts._lowered(left[some], points[some], rows)
+        return left
+
+    def _squares(self, points: Floats) -> Iterator[tuple[int, Ints]]:
+        """Yield each square that some of points (k, 2) lie in, with these."""
+        at = np.clip(np.floor((points - self.corner) / SQUARE).astype(np.int64), 0, self.shape - 1)
+        square = at[:, 0] * self.shape[1] + at[:, 1]
+        order = np.argsort(square, kind="stable")
+        for some in np.split(order, np.flatnonzero(np.diff(square[order])) + 1):
+            if len(some):
+                yield int(square[some[0]]), some
