@@ -292,6 +292,21 @@ def test_a_holder_that_would_touch_a_wall_keeps_a_cutter_out():
     assert reached(space, places, long, 0.2)[near].all()
 
 
+def test_a_ball_touches_a_steep_foot_only_from_below_what_it_stands_on():
+    wall = grid(lambda x, y: 10.0 * (10.0 - x), n=4, low=(9.0, 0.0), high=(10.0, 10.0))
+    space, places = block(wall), samples_on(wall, (1,), 300)
+    # Its tip is lower than where it touches by R (1 - cos a), a the slope's angle.
+    lower = BALL_6.radius * (1.0 - 1.0 / np.hypot(1.0, 10.0))
+    foot = places.point[:, 2] < float(space.low[2]) + lower - 0.05
+    assert foot.sum() > 20
+    assert not reached(space, places, BALL_6, 1.0)[foot].any()
+    assert reached(space, places, BALL_6, 1.0, below=1.0)[foot].any()
+    assert reached(space, places, BALL_6, 1.0, below=BALL_6.radius)[foot].all()
+    some = (space, places, (BALL_4, BALL_6), 0.99, 1.0, None, NO_PROGRESS)
+    assert cutter_for(*some).tool is BALL_4
+    assert cutter_for(*some, below=BALL_6.radius).tool is BALL_6
+
+
 # areas
 
 

@@ -309,3 +309,14 @@ def test_a_hole_through_a_hill_is_finished_inside_it_with_a_cutter_that_has_spac
         o for o in process.operations if o.kind == "profile_finish" and o.cutter.diameter < 13.0
     )
     assert 1.25 * inside.cutter.radius < 8.0
+
+
+def test_what_falls_off_steeply_to_the_blank_s_underside_is_finished_by_one_cutter():
+    """Half a cone lies on its flat side: a ball touches the lowest of it from below the blank only, where paths go too."""
+    cone = cq.Workplane("YZ").circle(12.0).workplane(offset=60.0).circle(8.0).loft()
+    half = cone.intersect(cq.Workplane("XY").box(200.0, 200.0, 50.0, centered=(True, True, False)))
+    session = routed(half.val().wrapped)
+    by_id = {o.id: o for o in session.process.operations}
+    steep, shallow = (by_id[f"finish-remaining{end}"] for end in ("-steep", ""))
+    assert steep.faces == shallow.faces and steep.tool.name == shallow.tool.name
+    assert not [o for o in session.process.operations if o.kind == "rest_finish"]

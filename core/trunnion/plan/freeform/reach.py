@@ -83,9 +83,10 @@ def reached(
     clearance: float,
     allowance: float = 0.0,
     progress: Progress = NO_PROGRESS,
+    below: float = 0.0,
 ) -> Bools:
     """Return which samples (k,) an upright cutter touches without being lifted off by other faces, with its shank and holder at least
-    `clearance` mm above the part, and without going lower than the blank.
+    `clearance` mm above the part, and without going lower than the blank by more than is allowed `below` it (mm).
 
     With an allowance it is the faces thickened by so much that it touches.
     """
@@ -104,7 +105,7 @@ def reached(
     space.skin.made_ready(progress)
     top = space.skin.drop.drop(plan, side, near - BESIDE, progress, near + BESIDE) + allowance
     highest = float(space.skin.points[:, 2].max())
-    clear = (top - tip[:, 2] < LIFTED) & (tip[:, 2] > space.low[2] - tolerance.SEW)
+    clear = (top - tip[:, 2] < LIFTED) & (tip[:, 2] > space.low[2] - below - tolerance.SEW)
     for z0, r0, _, r1 in tool.profile():
         # What is no wider than the cutter goes where it has been.
         if max(r0, r1) > tool.radius + tolerance.COINCIDENT:

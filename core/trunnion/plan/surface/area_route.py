@@ -84,6 +84,7 @@ def plan_area(
         state.route.reach_clearance,
         named(state.shop, wanted) if wanted else None,
         progress,
+        below=state.setup.clearance,
     )
     _report_unreached(state, area, samples, found)
     if found.tool is None:

@@ -12,6 +12,8 @@ HINDERED = "surface.in-the-way"
 """Code of the finding on what an upright tool is lifted off by other faces: a smaller one is there for it, or should be."""
 IN_STOCK = "surface.in-stock"
 """Code of the finding on what lies beside stock that is in the way of an upright tool."""
+LOW = "surface.low"
+"""Code of the finding on how far an upright tool comes below the blank."""
 
 
 def steepest() -> Any:

@@ -15,6 +15,7 @@ from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.progress import NO_PROGRESS
 from trunnion.toolpath.surface.waterline import WaterlineSettings, waterline
+from trunnion.units import trimmed
 from verify_tools import bull, flat
 
 FLAT, BALL = flat(10.0)(flute=20.0), bull(6.0, 3.0)()
@@ -76,6 +77,26 @@ def test_a_ball_goes_down_an_upright_wall_to_the_floor_it_stands_on() -> None:
         cut_tips(planned(skin, bull(6.0, 3.0)(flute=8.0), chord=0.005)[0].path)[:, 2].round(4)
     )
     assert levels[0] == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("high", [0.0, 1.5, 5.0])
+def test_how_far_a_tool_comes_below_the_blank_is_said(high) -> None:
+    """A ball of 3 mm goes down to 3 mm below a wall's foot, the blank to `high` below it."""
+    skin = round_wall(8.0, 0.0, 10.0)
+    _, drive = planned(skin, BALL, chord=0.005)
+    drive = replace(drive, low=np.array([*drive.low[:2], -high]))
+    _, setup, stock = driven(skin)
+    made = waterline(
+        drive, BALL, DATA, roughed(stock, skin), setup, WaterlineSettings(chord=0.005), NO_PROGRESS
+    )
+    deep = -high - float(made.path.position[:, 2].min())
+    found = [f for f in made.findings if f.code == "surface.low"]
+    assert bool(found) is (deep > 0.01) is (high < 3.0)
+    if found:
+        assert (
+            f"comes {trimmed(deep, 1)} mm lower" in found[0].text
+            and "above the table" in found[0].remedy
+        )
 
 
 def test_the_flank_above_a_ball_leaves_no_band_of_an_upright_wall() -> None:

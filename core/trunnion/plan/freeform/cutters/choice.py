@@ -83,9 +83,10 @@ def cutter_for(
     wanted: Tool | None,
     progress: Progress,
     size: Callable[[Tool], float] = by_diameter,
+    below: float = 0.0,
 ) -> AreaCutters:
     """Return the largest cutter, by a size of cutters, that reaches at least a share of what any one reaches of samples, the shortest of
-    its size; or the one that is `wanted`.
+    its size; or the one that is `wanted`. Tips may be lower than the blank by what is allowed `below` it (mm).
 
     What it misses goes to the largest smaller one, or else to one of less diameter, that reaches nearly all any does of that. One that is
     nearly as round as a hollow is taken where no other one reaches as much: it touches all of it from one place, and its passes would have
@@ -102,6 +103,7 @@ def cutter_for(
                 clearance,
                 0.0,
                 progress.part(n / (len(ranked) + 1), (n + 1) / (len(ranked) + 1)),
+                below,
             )
     none = np.zeros(len(samples), dtype=bool)
     reachable = np.logical_or.reduce([none, *reach.values()])

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol
 
-from trunnion.findings import Finding
+import numpy as np
+
+from trunnion import tolerance
+from trunnion.findings import Finding, warning
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -14,6 +18,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.estimate.scallop import stepover_on_plane
 from trunnion.progress import Progress
+from trunnion.toolpath.contact_passes.choices import LOW
 from trunnion.toolpath.contact_passes.linking.link_passes import extended_in_order, linked_in_order
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import Pass
@@ -21,6 +26,7 @@ from trunnion.toolpath.contact_passes.upright.fixed_axis import UprightPasses
 from trunnion.toolpath.contact_passes.upright.stock_contact import without_stock_contact
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.units import trimmed
 
 
 class LinkSettings(Protocol):
@@ -73,8 +79,8 @@ def linked_without_contact(
     parameters: LinkParameters,
     progress: Progress,
 ) -> tuple[Toolpath, tuple[Finding, ...]]:
-    """Return the toolpath over what of passes, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes, and a
-    finding of the area that is left.
+    """Return the toolpath over what of passes, a stepover (mm) apart, an upright tool cuts without meeting stock above its flutes, and
+    findings of the area that is left and of how far the tool comes below the blank.
 
     What stands beside a pass depends on those before it: passes are put in order first.
     """
@@ -84,4 +90,19 @@ def linked_without_contact(
     path = linked_in_order(
         clear, drive, tool, data, stock, setup, parameters, progress.part(0.2, 1.0)
     )
-    return path, blocked
+    return path, (*blocked, *_low(path, drive, tool))
+
+
+def _low(path: Toolpath, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
+    """Return how far an upright tool comes down beside the blank: no table is in the proof."""
+    deep = float(drive.low[2] - path.position[:, 2].min(initial=np.inf))
+    if deep <= tolerance.SEW:
+        return ()
+    return (
+        warning(
+            LOW,
+            f"{tool.name} comes {trimmed(deep, 1)} mm lower than the blank's underside beside {drive.feature}",
+            drive.feature,
+            remedy=f"let the part stand at least {trimmed(math.ceil(deep), 0)} mm above the table",
+        ),
+    )
