@@ -107,6 +107,26 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
     assert kept.tip[0, 0] == 2.0 and 17.0 < kept.tip[-1, 0] <= 18.0
 
 
+@pytest.mark.parametrize("backwards", [False, True])
+def test_a_pass_in_short_moves_ends_where_its_neck_is_still_free(backwards):
+    drive, _, stock = trench(30.0)
+    heights = stock.heights.copy()
+    x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
+    heights[x > 20.0] = 20.0
+    slim = replace(SLENDER, shank_diameter=1.9)
+    whole = run_of(2.0, 28.0, 15.0)
+    (kept,), _, _ = without_stock_contact(
+        [whole.reversed() if backwards else whole],
+        drive,
+        slim,
+        replace(stock, field=heights),
+        0.5,
+        NO_PROGRESS,
+    )
+    # Its neck of 0.95 mm comes to the stock at x = 19.05, moves are 0.12 mm long.
+    assert 18.8 < kept.tip[:, 0].max() <= 19.05 + SMALLER
+
+
 def test_passes_that_go_down_step_by_step_make_space_for_the_neck_of_those_below():
     drive, _, stock = trench(1.5, deep=9.0)
     stairs = [along(5.0, z) for z in np.arange(7.0, -0.1, -1.0)]

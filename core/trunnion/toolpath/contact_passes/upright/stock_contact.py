@@ -113,7 +113,7 @@ def without_stock_contact(
             met[some] = ~beside.is_free(tips[of][some])
         moves, pieces = [slice(None)], [one]
         if met.any():
-            moves, pieces = _pieces(one, segment[of][met])
+            moves, pieces = _pieces(one, _moves_with(met, segment[of]))
             left += one.length - sum(p.length for p in pieces)
             over = max(over, float(beside.centred.field.max() - tips[of][met][:, 2].min()))
         for some_moves in moves:
@@ -186,6 +186,12 @@ def _take_part_off(
     part = drive.skin.drop.drop(centres, level_disc(RIM * stock.cell), lowest, progress)
     some = tuple(rows[field[tuple(rows.T)] <= part + THIN].T)
     field[some] = -np.inf
+
+
+def _moves_with(met: Bools, segment: Ints) -> Ints:
+    """Return the moves (m,) that some of the positions (n,) of a pass are on: at its start a move shares one with the move before."""
+    begins = np.diff(segment, prepend=-1) > 0
+    return np.union1d(segment[met], np.maximum(segment[met & begins] - 1, 0))
 
 
 def _pieces(one: Pass, blocked: Ints) -> tuple[list[slice], list[Pass]]:
