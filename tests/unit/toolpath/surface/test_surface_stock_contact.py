@@ -54,6 +54,14 @@ def trench(wide, deep=20.0):
     return drive, setup, replace(stock, field=heights)
 
 
+def standing_from(stock, past, high=20.0):
+    """Return a stock that stands high where x is greater than `past`."""
+    heights = stock.heights.copy()
+    x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
+    heights[x > past] = high
+    return replace(stock, field=heights)
+
+
 def along(y, z=0.0, start=2.0, end=28.0):
     tips = np.array([[start, y, z], [end, y, z]])
     return Pass(tip=tips, axis=np.tile(UPRIGHT, (2, 1)), normal=np.tile(UPRIGHT, (2, 1)))
@@ -88,11 +96,9 @@ def test_stock_no_higher_than_the_flutes_are_long_is_in_no_neck_s_way():
 
 def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
     drive, _, stock = trench(30.0)
-    heights = stock.heights.copy()
-    x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
-    heights[x > 20.0] = 20.0
+    stock = standing_from(stock, 20.0)
     kept, _, findings = without_stock_contact(
-        [along(15.0)], drive, SLENDER, replace(stock, field=heights), 0.5, NO_PROGRESS
+        [along(15.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS
     )
     assert not kept and findings
     split = Pass(
@@ -100,9 +106,7 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
         axis=np.tile(UPRIGHT, (53, 1)),
         normal=np.tile(UPRIGHT, (53, 1)),
     )
-    (kept,), _, findings = without_stock_contact(
-        [split], drive, SLENDER, replace(stock, field=heights), 0.5, NO_PROGRESS
-    )
+    (kept,), _, findings = without_stock_contact([split], drive, SLENDER, stock, 0.5, NO_PROGRESS)
     # Its shank has a radius of 2 mm, the stock begins at x = 20.
     assert kept.tip[0, 0] == 2.0 and 17.0 < kept.tip[-1, 0] <= 18.0
 
@@ -110,16 +114,14 @@ def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
 @pytest.mark.parametrize("backwards", [False, True])
 def test_a_pass_in_short_moves_ends_where_its_neck_is_still_free(backwards):
     drive, _, stock = trench(30.0)
-    heights = stock.heights.copy()
-    x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
-    heights[x > 20.0] = 20.0
+    stock = standing_from(stock, 20.0)
     slim = replace(SLENDER, shank_diameter=1.9)
     whole = run_of(2.0, 28.0, 15.0)
     (kept,), _, _ = without_stock_contact(
         [whole.reversed() if backwards else whole],
         drive,
         slim,
-        replace(stock, field=heights),
+        stock,
         0.5,
         NO_PROGRESS,
     )
@@ -229,10 +231,7 @@ def test_a_strategy_leaves_what_lies_under_stock_and_says_so(strategy, chosen, i
 def test_leads_do_not_go_on_into_what_the_pass_ends_before(backwards):
     """Stock stands from x = 20 on, higher than the flutes are long; the pass goes up to it, or begins there."""
     drive, setup, stock = trench(30.0)
-    heights = stock.heights.copy()
-    x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
-    heights[x > 20.0] = 20.0
-    stock = replace(stock, field=heights)
+    stock = standing_from(stock, 20.0)
     slim = replace(SLENDER, shank_diameter=1.9)
     run = np.linspace(2.0, 28.0, 105)[:: -1 if backwards else 1]
     whole = Pass(
