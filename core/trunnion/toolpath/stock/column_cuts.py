@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -15,6 +16,8 @@ from trunnion.toolpath.stock.heightfield import cutting_chords
 
 SQUARE = 2.0
 """mm: side of the squares that cuts are looked up by."""
+SPACING = 0.1
+"""mm between places on a circle about a tool's axis."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,3 +108,10 @@ class ColumnCutGrid:
         for some in np.split(order, np.flatnonzero(np.diff(square[order])) + 1):
             if len(some):
                 yield int(square[some[0]]), some
+
+
+def circle(radius: float) -> Floats:
+    """Return places (k, 2) no farther apart than `SPACING` on a circle of a radius (mm) about the origin."""
+    count = math.ceil(2.0 * math.pi * radius / SPACING)
+    angle = 2.0 * math.pi * np.arange(count) / count
+    return radius * np.column_stack([np.cos(angle), np.sin(angle)])

@@ -10,17 +10,13 @@ import math
 from dataclasses import dataclass, field
 from functools import reduce
 
-import numpy as np
-
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.tool import Tool
-from trunnion.toolpath.stock.column_cuts import ColumnCuts
+from trunnion.toolpath.stock.column_cuts import ColumnCuts, circle
 from trunnion.toolpath.stock.heightfield import ARC_CHORD, PlanningStock
 
-SPACING = 0.1
-"""mm between points on the circle."""
 INSIDE = 2.0 * ARC_CHORD + tolerance.RAPID_DEPTH
 """mm that the circle is smaller than the flutes: arcs are cut as chords, by a cutter that is smaller by as much as they are off."""
 
@@ -42,9 +38,7 @@ class StockOverFlutes:
         radius = self.tool.radius - INSIDE
         if radius <= 0.0:
             return -math.inf
-        count = math.ceil(2.0 * math.pi * radius / SPACING)
-        angle = 2.0 * math.pi * np.arange(count) / count
-        points = tip[:2] + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+        points = tip[:2] + circle(radius)
         uncut = self.stock.heights_at(points)
         own = ColumnCuts.of(path, self.tool, self.stock.widths)
         over = tip[2] + self.tool.flute_length

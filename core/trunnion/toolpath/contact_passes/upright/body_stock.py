@@ -19,11 +19,9 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.kernels import heightfield
 from trunnion.model.tool import Tool
 from trunnion.toolpath.contact_passes.passes import Pass
-from trunnion.toolpath.stock.column_cuts import ColumnCutGrid, ColumnCuts
+from trunnion.toolpath.stock.column_cuts import ColumnCutGrid, ColumnCuts, circle
 from trunnion.toolpath.stock.heightfield import ARC_CHORD, PlanningStock
 
-SPACING = 0.1
-"""mm between places on a rim."""
 SMALLER = ARC_CHORD + tolerance.RAPID_DEPTH
 """mm that rims are smaller than the body: where arcs were opened into chords a cutter is known to have come less far."""
 PLACES = 200_000
@@ -109,13 +107,11 @@ class BodyStock:
         found, upper = np.zeros(len(tips), dtype=bool), self._upper
         wide = radius + heightfield.HALF_DIAGONAL * upper.cell
         rows = np.flatnonzero(_met(upper, self._tops[1], tips, np.array([[z, wide, z, wide]])))
-        count = math.ceil(2.0 * math.pi * radius / SPACING)
-        angle = 2.0 * math.pi * np.arange(count) / count
-        ring = radius * np.column_stack([np.cos(angle), np.sin(angle)])
-        pieces = math.ceil(len(rows) * count / PLACES)
+        places = circle(radius)
+        pieces = math.ceil(len(rows) * len(places) / PLACES)
         for some in np.array_split(rows, pieces) if pieces else ():
-            points = (tips[some, None, :2] + ring).reshape(-1, 2)
-            owner = np.repeat(some, count)
+            points = (tips[some, None, :2] + places).reshape(-1, 2)
+            owner = np.repeat(some, len(places))
             over = tips[owner, 2] + z + tolerance.RAPID_DEPTH
             higher = upper.heights_at(points) > over
             points, owner, over = points[higher], owner[higher], over[higher]
