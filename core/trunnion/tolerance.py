@@ -28,6 +28,9 @@ PICTURE = 0.05
 PICTURE_SHARE = 1.0 / 4000.0
 """Chord error of these meshes as a share of the diagonal of the part's box, where that is more: a third of a pixel of any part."""
 
+VIEW_SHARE = 1.0 / 10000.0
+"""Chord error of meshes in the window as a share of the same diagonal, where that is more than `CHORD`: a pixel at seven times as large."""
+
 MESH_ANGLE = 0.3
 """Turn from chord to chord (radians) of meshes that are only looked at; finer ones cost seconds (measured) and show nothing more."""
 

@@ -9,10 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
-from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepLib import BRepLib
@@ -105,17 +103,9 @@ def backed(part: Part, side: OpenSide, thickness: float) -> Part:
 
 
 def _ground(part: Part, side: OpenSide, thickness: float) -> _Ground:
-    """Return the plane under a part's faces and the box around them, from the kernel's box around the faces as they lie in the frame."""
-    frame = side.frame()
-    turn = gp_Trsf()
-    rows = [(*axis.tolist(), 0.0) for axis in (frame.x, frame.y, frame.z)]
-    turn.SetValues(*rows[0], *rows[1], *rows[2])
-    around = Bnd_Box()
-    BRepBndLib.AddOptimal_s(part.shape.Moved(TopLoc_Location(turn)), around, False, False)
-    around.SetGap(0.0)
-    x0, y0, z0, x1, y1, z1 = around.Get()
-    low, high = np.array([x0, y0, z0]), np.array([x1, y1, z1])
-    return _Ground(side=side, low=low, high=high, base=round(float(z0) - thickness, DECIMALS))
+    """Return the plane under a part's faces and the box around them in the side's frame."""
+    low, high = part.box(side.frame())
+    return _Ground(side=side, low=low, high=high, base=round(float(low[2]) - thickness, DECIMALS))
 
 
 def _pieces(part: Part, side: OpenSide) -> list[dict[int, Shape]]:

@@ -203,6 +203,18 @@ class Part:
         diagonal = float(np.linalg.norm(self.high - self.low))
         return max(tolerance.PICTURE, tolerance.PICTURE_SHARE * diagonal)
 
+    @property
+    def view_chord(self) -> float:
+        """Chord error (mm) of the triangles that the window shows: what nobody sees when looking at a seventh of the part."""
+        diagonal = float(np.linalg.norm(self.high - self.low))
+        return max(tolerance.CHORD, tolerance.VIEW_SHARE * diagonal)
+
+    def box(self, frame: Frame) -> tuple[Floats, Floats]:
+        """Return the lowest and the highest corner (3,) mm of the box around the solid, in a frame."""
+        from trunnion.part.topology.part_box import box_in
+
+        return box_in(frame, self._faces, self.graph(), self._progress)
+
     def section(self, frame: Frame, z: float) -> Region:
         """Return the material cut by the plane at height `z` of a frame, in the frame's x and y.
 

@@ -20,7 +20,7 @@ from trunnion.model.repair import words_of
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context, Contexts
 from trunnion.pipeline.execution import run_step
-from trunnion.pipeline.part_work import before_blank
+from trunnion.pipeline.part_work import before_recognition
 from trunnion.pipeline.step import Step
 from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
 from trunnion.plan.manual.operation_change import OperationChange, with_change
@@ -79,8 +79,8 @@ class Engine:
             share = progress.part(0.0, 0.7)
             part = reading.part(share) if reading else read_part(path, solid=solid, progress=share)
             with part.watched(progress.part(0.7, 1.0)):
-                before_blank(part)
                 part.graph()
+                before_recognition(part)
         self._contexts = Contexts(part, self._shop, self.library)
         self._file = (path.read_bytes(), path.suffix)
         return Session(part=self.context.facts)
@@ -148,11 +148,11 @@ class Engine:
         return self._contexts.after(session.cuts, progress)
 
     def mesh(self, session: Session, progress: Progress = NO_PROGRESS) -> Mesh:
-        """Return the triangles of the part, with the tag of each one's face."""
+        """Return the triangles of the part that a window shows, with the tag of each one's face."""
         progress = progress.afresh()
         part = self.context_of(session, progress).part
         with part.watched(progress):
-            return part.mesh()
+            return part.mesh(part.view_chord)
 
     def settings(self) -> dict[str, tuple[type, ...]]:
         """Return the groups of settings that each step declares."""
@@ -314,7 +314,9 @@ class Engine:
             raise BadCall("nothing is proven yet: verify first")
         values = checked(choose(ProofSettings, session.choices))
         progress = progress.afresh()
-        mesh = self.mesh(session, progress.part(0.0, 0.2))
+        part = self.context_of(session).part
+        with part.watched(progress.part(0.0, 0.2)):
+            mesh = part.mesh()
         return deviation_map(
             mesh,
             session.verdict.deviation,

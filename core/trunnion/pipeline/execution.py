@@ -27,8 +27,8 @@ def run_step(
             result = step.work(session, context, progress)
     except TrunnionError as reason:
         raise type(reason)(_whole_line(session, str(reason))) from None
-    if step.foresees is not None:
-        step.foresees(result.session, context)
+    for begin in step.foresees:
+        begin(result.session, context)
     # What a step uses may depend on its own result: the settings of the family that was recognised.
     key = progress.aside(lambda _: step.key(result.session, context))
     record = StepRecord(key=key, seconds=time.perf_counter() - began, findings=result.findings)

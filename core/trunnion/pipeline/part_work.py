@@ -12,6 +12,7 @@ from trunnion import registry, tolerance
 from trunnion.model.session import Session
 from trunnion.part.work import MeshWork, RefinedMeshWork
 from trunnion.pipeline.context import Context
+from trunnion.pipeline.planning.blank import ROUND, kind_of
 from trunnion.plan.contract import SkinPlanner, planner_for
 from trunnion.registry import PLANNERS
 
@@ -19,9 +20,15 @@ if TYPE_CHECKING:
     from trunnion.part.part import Part
 
 
-def before_blank(part: Part) -> None:
-    """Begin the triangles that tell how large a part is."""
-    part.begin(MeshWork())
+def before_recognition(part: Part) -> None:
+    """Begin the triangles that pictures show."""
+    part.begin(MeshWork(part.picture_chord))
+
+
+def before_blank(session: Session, context: Context) -> None:
+    """Begin the triangles that tell how large a round blank is, where one is asked for."""
+    if kind_of(session) in ROUND:
+        context.part.begin(MeshWork())
 
 
 def before_route(session: Session, context: Context) -> None:
@@ -39,11 +46,9 @@ def before_route(session: Session, context: Context) -> None:
 
 
 def before_proof(session: Session, context: Context) -> None:
-    """Begin the triangles that pictures show, and those that leaning tools are proven against, where a machine can lean one; none where
-    nothing is planned."""
+    """Begin the triangles that leaning tools are proven against, where something is planned and a machine can lean one."""
     if session.process is None or not session.process.operations:
         return
-    context.part.begin(MeshWork(context.part.picture_chord))
     machines = [context.shop.machines[s.machine] for s in session.setups if s.machine]
     if context.part.is_closed and any(m.rotary for m in machines):
         context.part.begin(RefinedMeshWork.of(context.part.tags, tolerance.FACET_CHORD))

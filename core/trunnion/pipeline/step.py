@@ -41,7 +41,7 @@ class Step:
     done: Callable[[Session], bool]
     version: int = 1
     uses: Callable[[Session], tuple[type, ...]] | None = None
-    foresees: Callable[[Session, Context], None] | None = None
+    foresees: tuple[Callable[[Session, Context], None], ...] = ()
 
     def key(self, session: Session, context: Context) -> str:
         """Return the digest of everything the step would be given now."""

@@ -17,7 +17,7 @@ from trunnion.model.feature import Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.execution import run_step
-from trunnion.pipeline.part_work import before_proof, before_route
+from trunnion.pipeline.part_work import before_blank, before_proof, before_route
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
 from trunnion.pipeline.planning.library import library_choice, library_key, routed
@@ -299,7 +299,7 @@ STEP_TABLE: tuple[Step, ...] = (
             registry.names(PART_KINDS),
         ),
         done=lambda s: s.recognition is not None,
-        foresees=before_route,
+        foresees=(before_blank, before_route),
         version=2,
     ),
     Step(
@@ -327,6 +327,7 @@ STEP_TABLE: tuple[Step, ...] = (
             source_of(s),
         ),
         done=lambda s: s.blank is not None,
+        version=2,
     ),
     Step(
         name="route",
@@ -343,7 +344,7 @@ STEP_TABLE: tuple[Step, ...] = (
             *library_key(s, b),
         ),
         done=lambda s: s.process is not None,
-        foresees=before_proof,
+        foresees=(before_proof,),
     ),
     Step(
         name="optimize",

@@ -37,6 +37,9 @@ def test_pictures_of_large_parts_are_as_coarse_as_nobody_sees() -> None:
     # A third of a pixel of a picture in which the diagonal has as many pixels as a part of 200 mm.
     pixel = np.linalg.norm(large.high - large.low) * tolerance.PICTURE / 200.0
     assert large.picture_chord == pytest.approx(pixel)
+    # The window's are finer, since a person comes nearer.
+    assert samples.read(samples.box_shape(4.0, 3.0, 2.0)).view_chord == tolerance.CHORD
+    assert large.view_chord == pytest.approx(large.picture_chord * 0.4)
 
 
 def test_a_blank_lies_in_its_frame(tmp_path: Path) -> None:

@@ -12,11 +12,13 @@ from cadquery import exporters
 from pytest import approx
 
 from samples import POCKET, block_with_pocket_shape
+from trunnion import tolerance
 from trunnion.cli.main import main
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Box, Revolved
 from trunnion.model.verdict import Outcome
+from trunnion.part.part import Part
 from trunnion.pipeline import Engine
 from verify_tools import flat, program_section, proof
 
@@ -95,6 +97,20 @@ def test_a_project_keeps_the_blank_of_a_file(line, tmp_path):
     line[0].save(session, tmp_path / "own.trunnion")
     again = Engine().open(tmp_path / "own.trunnion")
     assert again.blank.volume == session.blank.volume and again.blank.kind == "mesh"
+
+
+def test_a_box_around_a_part_asks_for_no_fine_triangles(line, monkeypatch):
+    engine = Engine()
+    session = engine.run(engine.open(line[2] / "block.step"), until="recognize")
+    asked, mesh = [], Part.mesh
+
+    def recorded(part, chord=tolerance.CHORD, angle=tolerance.MESH_ANGLE):
+        asked.append(chord)
+        return mesh(part, chord, angle)
+
+    monkeypatch.setattr(Part, "mesh", recorded)
+    session = engine.run(session, until="blank")
+    assert session.blank.kind == "box" and asked == []
 
 
 @pytest.mark.parametrize(

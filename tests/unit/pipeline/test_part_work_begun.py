@@ -10,10 +10,11 @@ import samples
 from trunnion import registry, tolerance
 from trunnion.model.session import Session
 from trunnion.part.part import Part
+from trunnion.part.read.part_file import PartReading
 from trunnion.part.work import MeshWork, PartWork, RefinedMeshWork
 from trunnion.pipeline import Engine
-from trunnion.pipeline.part_work import before_proof, before_route
-from trunnion.progress import Progress
+from trunnion.pipeline.part_work import before_blank, before_proof, before_route
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.registry import PLANNERS
 
 
@@ -45,17 +46,42 @@ def opening(part: Part, chords: Sequence[float]) -> list[PartWork]:
     return [RefinedMeshWork.of(part.tags, chord) for chord in chords]
 
 
+def test_pictures_are_begun_as_soon_as_a_part_is_read() -> None:
+    with PartReading.of_file(samples.block_with_pocket(), stays=True) as reading:
+        engine = Engine()
+        engine.open(samples.block_with_pocket(), reading=reading)
+        part = engine.context.part
+        assert part.finished(MeshWork(part.picture_chord), NO_PROGRESS) is not None
+
+
 def test_three_axes_need_no_triangles_to_be_proven_against_before_they_are_asked_for() -> None:
-    _, _, part, asked = routed({})
-    assert asked.begun == [MeshWork(part.picture_chord)]
+    _, _, _, asked = routed({})
+    assert asked.begun == []
 
 
 def test_where_a_tool_may_lean_what_it_is_proven_against_is_begun_with_the_route() -> None:
     _, _, part, asked = routed({"setup.machine": "Trunnion 650"})
-    assert asked.begun == [
-        MeshWork(part.picture_chord),
-        *opening(part, [tolerance.FACET_CHORD]),
-    ]
+    assert asked.begun == opening(part, [tolerance.FACET_CHORD])
+
+
+@pytest.mark.parametrize(
+    ("kind", "family", "wants"),
+    [
+        ("auto", "panel", []),
+        ("box", "casing", []),
+        ("cylinder", "panel", [MeshWork()]),
+        ("auto", "casing", [MeshWork()]),
+    ],
+)
+def test_the_triangles_of_a_round_blank_are_begun_once_it_is_known(
+    kind: str, family: str, wants: list[PartWork]
+) -> None:
+    engine, session, _, asked = routed({})
+    assert session.recognition is not None
+    asked.begun.clear()
+    session = replace(session, recognition=replace(session.recognition, family=family))
+    before_blank(engine.with_choices(session, {"blank.kind": kind}), engine.context)
+    assert asked.begun == wants
 
 
 @pytest.mark.parametrize("family", ["casing", "impeller", "surface"])
@@ -77,4 +103,4 @@ def test_nothing_is_begun_for_faces_that_are_planned_with_a_backing() -> None:
     surface = replace(session.recognition, family="surface")
     before_route(replace(session, recognition=surface), engine.context)
     before_proof(session, engine.context)
-    assert asked.begun == [MeshWork(part.picture_chord)]
+    assert asked.begun == []

@@ -121,6 +121,10 @@ class BlankBase(ABC):
     def inward(self, points: Floats) -> Floats:
         """Return how far below its surface points (n, 3) in its own frame are (n,) mm, at most; negative outside, at least so far."""
 
+    def holds_box(self, low: Floats, high: Floats) -> bool:
+        """Return whether a box between two corners (3,) in its own frame is known to lie in it; not where a kind can't tell at once."""
+        return False
+
     @abstractmethod
     def sides(self, points: Floats, near: float, sag: float = 0.0) -> Bools:
         """Return for points (n, 3) in its own frame in which of its s sides each lies within `near` mm (n, s); `sag` more on curved

@@ -70,6 +70,10 @@ class Box(BlankBase):
         """See `BlankBase`."""
         return np.minimum(points - self.low, self.high - points).min(axis=1)
 
+    def holds_box(self, low: Floats, high: Floats) -> bool:
+        """See `BlankBase`."""
+        return bool(self.inward(np.stack([low, high])).min() >= -tolerance.SEW)
+
     def sides(self, points: Floats, near: float, sag: float = 0.0) -> Bools:
         """See `BlankBase`: the three at the low corner, then the three at the high one."""
         return np.abs(np.hstack([points - self.low, points - self.high])) <= near

@@ -13,14 +13,16 @@ from OCP.gp import gp_Pnt
 from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.part.shape.evaluate import evaluator_of
 from trunnion.part.topology.canonical import CanonicalSurface
 from trunnion.part.topology.faces import TrimmedFace
 from trunnion.part.topology.trim import Trim
 from trunnion.progress import NO_PROGRESS, Progress
 
-_GRID, _ZOOM, _ZOOMS, _STEPS = 13, 5, 4, 65
+_GRID, _ZOOM, _ZOOMS, _STEPS = 13, 3, 12, 65
+_SIX = np.hstack([np.eye(3), -np.eye(3)])
+"""The directions (3, 6) in which a box has its sides, as columns."""
 Box = tuple[Floats, Floats]
 
 
@@ -115,25 +117,31 @@ def _searched(view: TrimmedFace, boundary: Floats, progress: Progress) -> Box:
     step = np.array([(u1 - u0) / _GRID, (v1 - v0) / _GRID])
     trim, evaluate = Trim(view, progress), evaluator_of(view.adaptor)
 
-    def inside(uv: Floats) -> tuple[Floats, Floats]:
-        kept = uv[trim.holds(uv, with_rim=True)]
-        return kept, evaluate(kept)[:, 0]
+    def inside(uv: Floats) -> tuple[Floats, Floats, Bools]:
+        held = trim.holds(uv, with_rim=True)
+        return uv[held], evaluate(uv[held])[:, 0], held
 
-    projection, points = inside(np.array(view.grid(_GRID)))
+    grid, points, _ = inside(np.array(view.grid(_GRID)))
     found = [boundary, points]
-    for axis in range(3):
-        for sense in (1.0, -1.0):
-            here, reach = projection, step
-            best = points
-            for _ in range(_ZOOMS if len(points) else 0):
-                centre = here[int(np.argmax(sense * best[:, axis]))]
-                share = np.linspace(-1.0, 1.0, _ZOOM)
-                around = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
-                here, best = inside(np.clip(centre + around * reach, [u0, v0], [u1, v1]))
-                if not len(best):
-                    break
-                found.append(best)
-                reach = reach * (2.0 / _ZOOM)
+    if len(points):
+        share = np.linspace(-1.0, 1.0, _ZOOM)
+        pattern = np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2)
+        centre = grid[(points @ _SIX).argmax(axis=0)]
+        for zoom in range(_ZOOMS):
+            around = centre[:, None] + pattern * (step * 0.5**zoom)
+            uv = np.clip(around.reshape(-1, 2), [u0, v0], [u1, v1])
+            _, points, held = inside(uv)
+            if not len(points):
+                break
+            found.append(points)
+            far = np.full(len(uv), -np.inf)
+            own = np.flatnonzero(held) // len(pattern)
+            far[held] = (points @ _SIX)[np.arange(len(own)), own]
+            far = far.reshape(len(centre), len(pattern))
+            has_points = np.isfinite(far).any(axis=1)
+            centre[has_points] = uv.reshape(len(centre), -1, 2)[
+                has_points, far[has_points].argmax(axis=1)
+            ]
     cloud = np.concatenate(
         [f for f in found if len(f)] or [np.array([view.at(0.5 * (u0 + u1), 0.5 * (v0 + v1))[0]])]
     )

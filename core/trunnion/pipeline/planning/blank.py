@@ -35,6 +35,17 @@ from trunnion.progress import Progress
 from trunnion.recognize.contract import usual_blank
 from trunnion.settings import checked, choose
 
+ROUND = (CYLINDER, TURNED, FINISH_TURNED, RING_TURNED)
+"""Kinds of blank whose size depends on how far the part reaches from an axis: triangles tell."""
+
+
+def kind_of(session: Session) -> str:
+    """Return the kind of blank that a session asks for: the usual one of its family where it is left to the program."""
+    kind = choose(BlankSettings, session.choices).kind
+    if kind == AUTOMATIC and session.recognition is not None:
+        return usual_blank(session.recognition.family)
+    return str(kind)
+
 
 def blank_of(session: Session, context: Context, frame: Frame, progress: Progress) -> Blank:
     """Return the blank by the session's settings, in a frame; raise `BadInput` when there is no such one."""
@@ -44,11 +55,9 @@ def blank_of(session: Session, context: Context, frame: Frame, progress: Progres
             f"there is no material {settings.material} in the catalogue; known: {', '.join(sorted(context.shop.materials))}"
         )
     material = context.shop.materials[settings.material]
-    if settings.kind == FILE:
+    kind = kind_of(session)
+    if kind == FILE:
         return _read(session, frame, material, settings.file, progress)
-    kind = settings.kind
-    if kind == AUTOMATIC and session.recognition is not None:
-        kind = usual_blank(session.recognition.family)
     low, high = context.box(frame)
     if kind == TURNED:
         mesh = context.part.mesh()
@@ -111,6 +120,8 @@ def _digest(path: str, changed: int, size: int) -> str:
 
 def too_small(blank: Blank, context: Context) -> tuple[Finding, ...]:
     """Return an error where the part stands out of its blank; a backing may, there is nothing of it in a file's blank."""
+    if blank.holds_box(*context.part.box(blank.frame)):
+        return ()
     mesh = context.part.mesh()
     points = mesh.points[np.unique(mesh.triangles[~np.isin(mesh.face, context.part.backing)])]
     inward = blank.inward(blank.frame.to_local(points))
