@@ -97,6 +97,7 @@ class Part:
         self._faces = dict(zip(facts.tags, own, strict=True))
         self._graph: FaceGraph | None = None
         self._meshes: dict[tuple[float, float], Mesh] = {}
+        self._boxes: dict[bytes, tuple[Floats, Floats]] = {}
         self._sections: dict[tuple[bytes, float], Region] = {}
         self._bounding: BoundaryCurves | None = None
         self._bends: dict[int, FaceCurvature] = {}
@@ -213,7 +214,10 @@ class Part:
         """Return the lowest and the highest corner (3,) mm of the box around the solid, in a frame."""
         from trunnion.part.topology.part_box import box_in
 
-        return box_in(frame, self._faces, self.graph(), self._progress)
+        key = _key(frame)
+        if key not in self._boxes:
+            self._boxes[key] = box_in(frame, self._faces, self.graph(), self._progress)
+        return self._boxes[key]
 
     def section(self, frame: Frame, z: float) -> Region:
         """Return the material cut by the plane at height `z` of a frame, in the frame's x and y.
@@ -222,7 +226,7 @@ class Part:
         faces is moved up by `tolerance.SECTION_STEP` until it doesn't.
         """
         self._progress.check()
-        key = (b"".join(a.tobytes() for a in (frame.origin, frame.x, frame.z)), float(z))
+        key = (_key(frame), float(z))
         if key not in self._sections:
             if self._slicer is None:
                 from trunnion.part.shape.section import SolidSlicer
@@ -323,3 +327,8 @@ def shapes_from(data: bytes) -> tuple[Shape, Shape]:
     shape = inside.Value()
     inside.Next()
     return shape, inside.Value()
+
+
+def _key(frame: Frame) -> bytes:
+    """Return what tells a frame from others in a cache."""
+    return b"".join(a.tobytes() for a in (frame.origin, frame.x, frame.z))

@@ -9,7 +9,6 @@ import pytest
 import shapely
 from pytest import approx
 
-from trunnion import tolerance
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.kernels.revolved_rays import inside_outline
 from trunnion.geometry.mesh import Mesh, welded
@@ -55,14 +54,11 @@ def scattered(n: int = 4000) -> np.ndarray:
     return np.random.default_rng(3).uniform(-15.0, 25.0, (n, 3))
 
 
-def test_a_box_says_what_lies_in_it_and_others_leave_it_open():
-    low, high = box(ASKEW).low, box(ASKEW).high
-    assert box(ASKEW).holds_box(low, high) and box(ASKEW).holds_box(low + 1.0, high - 1.0)
-    for axis in range(3):
-        out = np.eye(3)[axis] * 2.0 * tolerance.SEW
-        assert not box(ASKEW).holds_box(low - out, high)
-        assert not box(ASKEW).holds_box(low, high + out)
-    assert not any(blank.holds_box(low, high) for blank in ALL[1:])
+@pytest.mark.parametrize("blank", ALL, ids=lambda b: b.kind)
+def test_what_lies_between_the_corners_of_a_box_lies_in_it(blank):
+    corners = blank.corners(blank.frame)
+    assert (blank.inward(corners).min() >= -1e-9) or not blank.is_box
+    assert blank.is_box == isinstance(blank, Box)
 
 
 def test_volumes_are_those_of_the_textbook():

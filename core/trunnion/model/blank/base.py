@@ -40,11 +40,12 @@ class Builder(Protocol[S]):
 
 class BlankBase(ABC):
     """A solid in a frame of its own. `low`, `high` (3,) mm: its box in `frame`; `material` a catalogue name; `density` kg/dm3; `source` the
-    digest of the file that it was read from, empty for none.
+    digest of the file that it was read from, empty for none; `is_box`: what lies between its own corners lies in it.
     """
 
     __slots__ = ()
     KIND: ClassVar[str]
+    is_box: ClassVar[bool] = False
     frame: Frame
     low: Floats
     high: Floats
@@ -120,10 +121,6 @@ class BlankBase(ABC):
     @abstractmethod
     def inward(self, points: Floats) -> Floats:
         """Return how far below its surface points (n, 3) in its own frame are (n,) mm, at most; negative outside, at least so far."""
-
-    def holds_box(self, low: Floats, high: Floats) -> bool:
-        """Return whether a box between two corners (3,) in its own frame is known to lie in it; not where a kind can't tell at once."""
-        return False
 
     @abstractmethod
     def sides(self, points: Floats, near: float, sag: float = 0.0) -> Bools:

@@ -28,6 +28,7 @@ class Box(BlankBase):
 
     source: ClassVar[str] = ""
     KIND: ClassVar[str] = "box"
+    is_box: ClassVar[bool] = True
     frame: Frame
     low: Floats
     high: Floats
@@ -69,10 +70,6 @@ class Box(BlankBase):
     def inward(self, points: Floats) -> Floats:
         """See `BlankBase`."""
         return np.minimum(points - self.low, self.high - points).min(axis=1)
-
-    def holds_box(self, low: Floats, high: Floats) -> bool:
-        """See `BlankBase`."""
-        return bool(self.inward(np.stack([low, high])).min() >= -tolerance.SEW)
 
     def sides(self, points: Floats, near: float, sag: float = 0.0) -> Bools:
         """See `BlankBase`: the three at the low corner, then the three at the high one."""

@@ -134,10 +134,9 @@ def _searched(view: TrimmedFace, boundary: Floats, progress: Progress) -> Box:
             if not len(points):
                 break
             found.append(points)
-            far = np.full(len(uv), -np.inf)
             own = np.flatnonzero(held) // len(pattern)
-            far[held] = (points @ _SIX)[np.arange(len(own)), own]
-            far = far.reshape(len(centre), len(pattern))
+            far = np.full((len(centre), len(pattern)), -np.inf)
+            far.ravel()[held] = (points @ _SIX)[np.arange(len(own)), own]
             has_points = np.isfinite(far).any(axis=1)
             centre[has_points] = uv.reshape(len(centre), -1, 2)[
                 has_points, far[has_points].argmax(axis=1)

@@ -58,7 +58,6 @@ def blank_of(session: Session, context: Context, frame: Frame, progress: Progres
     kind = kind_of(session)
     if kind == FILE:
         return _read(session, frame, material, settings.file, progress)
-    low, high = context.box(frame)
     if kind == TURNED:
         mesh = context.part.mesh()
         return make_envelope(frame, frame.to_local(mesh.points), mesh.triangles, material, settings)
@@ -68,6 +67,7 @@ def blank_of(session: Session, context: Context, frame: Frame, progress: Progres
         return make_finish_turned(frame, points, mesh.triangles, mesh.face, material)
     if kind == RING_TURNED:
         return make_ring_turned(frame, context.part.mesh(), context.part.graph(), material)
+    low, high = context.box(frame)
     if kind == CYLINDER:
         points = frame.to_local(context.part.mesh().points)
         return make_bar(frame, low, high, points, material, settings)
@@ -120,8 +120,10 @@ def _digest(path: str, changed: int, size: int) -> str:
 
 def too_small(blank: Blank, context: Context) -> tuple[Finding, ...]:
     """Return an error where the part stands out of its blank; a backing may, there is nothing of it in a file's blank."""
-    if blank.holds_box(*context.part.box(blank.frame)):
-        return ()
+    if blank.is_box:
+        corners = np.stack(context.part.box(blank.frame))
+        if blank.inward(corners).min() >= -tolerance.SEW:
+            return ()
     mesh = context.part.mesh()
     points = mesh.points[np.unique(mesh.triangles[~np.isin(mesh.face, context.part.backing)])]
     inward = blank.inward(blank.frame.to_local(points))
