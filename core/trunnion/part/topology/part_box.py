@@ -1,4 +1,4 @@
-"""The box around faces in any frame, of those that may be farthest."""
+"""The box around faces in any frame: only those that may reach farthest are asked."""
 
 from __future__ import annotations
 
