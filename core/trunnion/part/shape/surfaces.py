@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -353,31 +353,45 @@ class ContactFace:
 
 def level_face(
     tag: int, z: float, edges: list[TrimEdge], side: float = 1.0, progress: Progress = NO_PROGRESS
-) -> ContactFace:
-    """Return a level face from its outline's edges in plan (s is x, u is y); side +1 looks up, -1 down."""
-    boundary, outline = [], []
+) -> ContactFace | None:
+    """Return a level face from its outline's edges in plan (s is x, u is y); side +1 looks up, -1 down. None when the edges don't close."""
+    boundary, outline, lying = [], [], []
     for e in progress.each(edges):
         if e.radius:
             a, b = math.atan2(e.u0 - e.uc, e.s0 - e.sc), math.atan2(e.u1 - e.uc, e.s1 - e.sc)
             b = a + (b - a + math.pi) % (2 * math.pi) - math.pi
             boundary.append(point_strip(Guide(1, e.sc, e.uc), e.radius, z, min(a, b), max(a, b)))
             outline.append([e.s0, e.u0, e.s1, e.u1, e.sc, e.uc, math.copysign(e.radius, b - a)])
+            lying.append(e)
         elif (e.s0, e.u0) != (e.s1, e.u1):
             boundary.append(_line_strip((e.s0, e.u0), (e.s1, e.u1), z))
             outline.append([e.s0, e.u0, e.s1, e.u1, 0.0, 0.0, 0.0])
+            lying.append(e)
     closed, bridges = closed_up(np.array(outline).reshape(-1, EDGE_COLUMNS))
     boundary += [_line_strip(row[:2], row[2:4], z) for row in bridges.tolist()]
-    level = strips_of(
-        Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, z, 1.0, 0.0), edges, -side, progress
-    )
-    empty = np.zeros((0, STRIP_COLUMNS))
+    along, across = Guide(0, 0.0, 0.0, 1.0, 0.0), Profile(0.0, z, 1.0, 0.0)
+    level = strips_of(along, across, edges, -side, progress)
+    if level is None:
+        # Ends a little farther apart than rounding: the outline as it is closed for asking what is inside is that of the area.
+        level = strips_of(along, across, _joined(lying, closed, bridges), -side, progress)
+    if level is None:
+        return None
     return ContactFace(
         tag,
         np.array(boundary).reshape(-1, STRIP_COLUMNS),
-        empty if level is None else level,
+        level,
         np.vstack([closed, bridges]),
         z,
     )
+
+
+def _joined(edges: list[TrimEdge], closed: Floats, bridges: Floats) -> list[TrimEdge]:
+    """Return edges with their ends where `closed_up` has put them (c, 7), and the lines (b, 7) that bridge what gaps remain."""
+    moved = [
+        replace(e, s0=s0, u0=u0, s1=s1, u1=u1)
+        for e, (s0, u0, s1, u1) in zip(edges, closed[:, :ECX].tolist(), strict=True)
+    ]
+    return moved + [TrimEdge(*row) for row in bridges[:, :ECX].tolist()]
 
 
 def _line_strip(start: Sequence[float], end: Sequence[float], z: float) -> Floats:
