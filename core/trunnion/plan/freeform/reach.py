@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -24,6 +25,16 @@ PLASTIC = 1.3247179572447460
 """The real root of x^3 = x + 1."""
 STEPS = (1.0 / PLASTIC, 1.0 / PLASTIC**2)
 """Steps of an even spread over a square (Roberts 2018, R2). No whole numbers of both add up to one: else lines would hold all of it."""
+
+
+class PartSpace(Protocol):
+    """The skin of a part and the lower corner (3,) of its blank's box, seen from the tool's direction (`SurfaceSpace`, `SurfaceDrive`)."""
+
+    @property
+    def skin(self) -> Skin: ...
+
+    @property
+    def low(self) -> Floats: ...
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -77,7 +88,7 @@ def leans(samples: AreaSamples) -> Floats:
 
 
 def reached(
-    space: SurfaceSpace,
+    space: PartSpace,
     samples: AreaSamples,
     tool: Tool,
     clearance: float,

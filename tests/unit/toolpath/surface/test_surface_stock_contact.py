@@ -94,21 +94,76 @@ def test_stock_no_higher_than_the_flutes_are_long_is_in_no_neck_s_way():
     assert len(kept) == 1 and not findings
 
 
-def test_of_a_pass_that_runs_into_stock_the_rest_is_cut():
+def split(one, count):
+    """Return a pass along a straight line in so many moves."""
+    tips = np.linspace(one.tip[0], one.tip[-1], count + 1)
+    up = np.tile(UPRIGHT, (count + 1, 1))
+    return Pass(tip=tips, axis=up, normal=up)
+
+
+@pytest.mark.parametrize("count", [1, 2, 52])
+def test_of_a_pass_that_runs_into_stock_the_rest_is_cut(count):
+    """Its moves may be as long as itself."""
     drive, _, stock = trench(30.0)
     stock = standing_from(stock, 20.0)
-    kept, _, findings = without_stock_contact(
-        [along(15.0)], drive, SLENDER, stock, 0.5, NO_PROGRESS
+    (kept,), _, (finding,) = without_stock_contact(
+        [split(along(15.0), count)], drive, SLENDER, stock, 0.5, NO_PROGRESS
     )
-    assert not kept and findings
-    split = Pass(
-        tip=np.column_stack([np.linspace(2.0, 28.0, 53), np.full(53, 15.0), np.zeros(53)]),
-        axis=np.tile(UPRIGHT, (53, 1)),
-        normal=np.tile(UPRIGHT, (53, 1)),
+    # Its shank has a radius of 2 mm, the stock begins at x = 20: 10 mm are left.
+    assert kept.tip[0, 0] == 2.0 and 17.5 < kept.tip[-1, 0] <= 18.0
+    assert len(kept) <= count + 1
+    assert 5.0 <= area_of(finding) <= 5.2
+
+
+def area_of(finding):
+    """Return the area in mm2 that a finding tells of."""
+    return float(finding.text.split(" mm2")[0].split()[-1])
+
+
+def test_a_long_move_ends_before_stock_that_only_its_last_position_meets():
+    """After it a short one goes on along the stock: both have that position in common."""
+    drive, _, stock = trench(30.0)
+    stock = standing_from(stock, 20.0)
+    tips = np.array([[2.0, 10.0, 0.0], [18.2, 10.0, 0.0], [18.2, 11.0, 0.0]])
+    up = np.tile(UPRIGHT, (3, 1))
+    corner = Pass(tip=tips, axis=up, normal=np.array([[0.0, 1.0, 0.0]] * 2 + [[-1.0, 0.0, 0.0]]))
+    (kept,), _, _ = without_stock_contact([corner], drive, SLENDER, stock, 0.5, NO_PROGRESS)
+    assert kept.tip[0, 0] == 2.0 and 17.7 < kept.tip[-1, 0] <= 18.0
+    assert np.allclose(np.linalg.norm(kept.normal, axis=1), 1.0)
+
+
+def test_a_long_move_over_a_ridge_is_cut_on_both_sides_of_it():
+    drive, _, stock = trench(30.0)
+    heights = stock.heights.copy()
+    x = stock.corner[0] + (np.arange(len(heights)) + 0.5) * stock.cell
+    heights[np.abs(x - 15.0) < 1.0] = 20.0
+    kept, _, _ = without_stock_contact(
+        [along(15.0)], drive, SLENDER, replace(stock, field=heights), 0.5, NO_PROGRESS
     )
-    (kept,), _, findings = without_stock_contact([split], drive, SLENDER, stock, 0.5, NO_PROGRESS)
-    # Its shank has a radius of 2 mm, the stock begins at x = 20.
-    assert kept.tip[0, 0] == 2.0 and 17.0 < kept.tip[-1, 0] <= 18.0
+    assert [len(p) for p in kept] == [2, 2]
+    assert 11.5 < kept[0].tip[1, 0] <= 12.0 and 18.0 <= kept[1].tip[0, 0] < 18.5
+
+
+def test_what_is_cut_of_long_moves_makes_space_for_the_neck_of_those_below():
+    """Level by level down into stock 9 mm high, before a wall of it that is higher than all flutes and neck."""
+    drive, _, stock = trench(1.5, deep=9.0)
+    stock = standing_from(stock, 20.0)
+    stairs = [along(5.0, z) for z in np.arange(7.0, -0.1, -1.0)]
+    kept, _, findings = without_stock_contact(stairs, drive, SLENDER, stock, 0.5, NO_PROGRESS)
+    assert findings and [p.tip[0, 2] for p in kept] == [p.tip[0, 2] for p in stairs]
+    assert all(p.tip[0, 0] == 2.0 and 17.0 < p.tip[-1, 0] <= 20.0 for p in kept)
+
+
+def test_the_area_that_is_said_to_be_left_is_that_of_faces():
+    """Passes lie half a millimetre from each other, as leaning faces ask for; the widest stepover, on others, is ten times as large."""
+    drive, _, stock = trench(30.0)
+    stock = standing_from(stock, 20.0)
+    rows = [along(y) for y in np.arange(10.0, 20.1, 0.5).tolist()]
+    _, _, (finding,) = without_stock_contact(rows, drive, SLENDER, stock, 5.0, NO_PROGRESS)
+    # From x = 18 to 28 and from y = 10 to 20, and past their ends.
+    assert 100.0 <= area_of(finding) <= 13.0 * 20.0
+    _, _, (finding,) = without_stock_contact(rows, drive, SLENDER, stock, 0.5, NO_PROGRESS)
+    assert area_of(finding) == pytest.approx(10.0 * 10.5, rel=0.1)
 
 
 @pytest.mark.parametrize("backwards", [False, True])
@@ -225,6 +280,9 @@ def test_a_strategy_leaves_what_lies_under_stock_and_says_so(strategy, chosen, i
     codes = [f.code for f in made.findings]
     assert ("surface.in-stock" in codes) is not is_roughed
     assert bool((made.path.mark == Mark.CUT).any()) is is_roughed
+    # All of the face is left.
+    areas = [area_of(f) for f in made.findings if f.code == "surface.in-stock"]
+    assert areas == pytest.approx([] if is_roughed else [64.0 * 1.5**0.5], abs=0.1)
 
 
 @pytest.mark.parametrize("backwards", [False, True])

@@ -24,8 +24,10 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.choices import IN_STOCK
 from trunnion.toolpath.contact_passes.linking.parameters import PassStock
-from trunnion.toolpath.contact_passes.passes import Pass, spaced
+from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.upright.body_stock import BodyStock, CutStock
+from trunnion.toolpath.contact_passes.upright.pass_samples import PassSamples, RefinedPass
+from trunnion.toolpath.contact_passes.upright.uncut_area import uncut_area
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 FINE = 0.25
@@ -92,35 +94,71 @@ def without_stock_contact(
     rows = np.array(tool.profile()).reshape(-1, 4)
     if not len(passes) or not len(rows) or not all(p.upright for p in passes):
         return list(passes), None, ()
-    tips, owner, segment = _spaced(passes, FINE)
-    low, high = _around(stock, tips, rows, tool)
-    doubtful = ~_is_free(stock.cropped(low, high), tips, rows)
+    places = PassSamples.on(passes, FINE)
+    low, high = _around(stock, places.tips, rows, tool)
+    coarse = stock.cropped(low, high)
+    doubtful = ~_is_free(coarse, places.tips, rows)
     if not doubtful.any():
         return list(passes), None, ()
     before = progress.aside(
         lambda own: _cut_stock(stock, low, high, own), "Cutting the stock in finer cells"
     )
-    progress.aside(partial(_take_part_off, before.centred, drive, tips[doubtful], tool))
-    beside = before.beside(passes, tool)
-    starts = np.searchsorted(owner, np.arange(len(passes) + 1))
-    kept, left, over = list[Pass](), 0.0, 0.0
+    progress.aside(partial(_take_part_off, before.centred, drive, places.tips[doubtful], tool))
+    found = _free_moves(passes, places, doubtful, before.beside(passes, tool), progress)
+    # Moves along a straight wall are as long as the wall: of one only what is near stock is left out. With moves in steps more is cut than
+    # without them, and more cuts only lower the stock: what was free is free again, and only steps are left out.
+    stepped = [RefinedPass.of(p, m, FINE) for p, m in zip(passes, found.blocked, strict=True)]
+    steps = [one.path for one in stepped]
+    if any(one.new.any() for one in stepped):
+        places = PassSamples.on(steps, FINE)
+        doubtful = ~_is_free(coarse, places.tips, rows)
+        found = _free_moves(steps, places, doubtful, before.beside(steps, tool), progress)
+    kept = list[Pass]()
+    for one, step, runs in zip(passes, stepped, found.runs, strict=True):
+        # What is cut whole may be closed.
+        kept += [one] if runs == [slice(None)] else [step.piece(moves) for moves in runs]
+    is_cut = [_is_in(runs, len(p) - 1) for p, runs in zip(steps, found.runs, strict=True)]
+    area = uncut_area(steps, places, is_cut, drive, tool, stepover, progress)
+    return kept, _PassStock(before, kept, tool, progress), _findings(area, found.over, drive, tool)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _FreeMoves:
+    """What of passes a tool cuts without meeting stock: which moves (m,) of each pass are `blocked`, the `runs` of moves of each that are
+    cut, and how far `over` (mm) the lowest place that is met anything stands."""
+
+    blocked: list[Ints]
+    runs: list[list[slice]]
+    over: float
+
+
+def _free_moves(
+    passes: Sequence[Pass],
+    places: PassSamples,
+    doubtful: Bools,
+    beside: BodyStock,
+    progress: Progress,
+) -> _FreeMoves:
+    """Cut passes in their order as far as nothing is met at positions on them, (n,) of which are doubtful."""
+    blocked, runs, over = list[Ints](), list[list[slice]](), 0.0
+    starts = np.searchsorted(places.owner, np.arange(len(passes) + 1))
     for k, one in enumerate(passes):
         progress.check()
         of = slice(starts[k], starts[k + 1])
-        met = np.zeros(starts[k + 1] - starts[k], dtype=bool)
+        tips, met = places.tips[of], np.zeros(starts[k + 1] - starts[k], dtype=bool)
         some = np.flatnonzero(doubtful[of])
         if len(some):
-            met[some] = ~beside.is_free(tips[of][some])
-        moves, pieces = [slice(None)], [one]
+            met[some] = ~beside.is_free(tips[some])
+        moves, free = np.zeros(0, np.int64), [slice(None)]
         if met.any():
-            moves, pieces = _pieces(one, _moves_with(met, segment[of]))
-            left += one.length - sum(p.length for p in pieces)
-            over = max(over, float(beside.centred.field.max() - tips[of][met][:, 2].min()))
-        for some_moves in moves:
-            beside.cut(k, some_moves)
-        kept += pieces
-    along = _PassStock(before, kept, tool, progress)
-    return kept, along, _findings(left * stepover, over, drive, tool)
+            moves = _moves_with(met, places.move[of])
+            free = _runs(one, moves)
+            over = max(over, float(beside.centred.field.max() - tips[met, 2].min()))
+        for run in free:
+            beside.cut(k, run)
+        blocked.append(moves)
+        runs.append(free)
+    return _FreeMoves(blocked, runs, over)
 
 
 def _cut_stock(stock: PlanningStock, low: Floats, high: Floats, progress: Progress) -> CutStock:
@@ -139,18 +177,6 @@ def _around(stock: PlanningStock, tips: Floats, rows: Floats, tool: Tool) -> tup
     low, high = stock.box()
     plan = np.clip(tips[:, :2], low, high)
     return plan.min(axis=0) - reach, plan.max(axis=0) + reach
-
-
-def _spaced(passes: Sequence[Pass], step: float) -> tuple[Floats, Ints, Ints]:
-    """Return positions (n, 3) along all passes no farther apart than a step (mm), the number (n,) of the pass that each is on, and of the
-    move of that."""
-    tips, owner, segment = list[Floats](), list[Ints](), list[Ints]()
-    for k, one in enumerate(passes):
-        positions, move = spaced(one.tip, step)
-        tips.append(positions)
-        segment.append(move)
-        owner.append(np.full(len(positions), k))
-    return np.concatenate(tips), np.concatenate(owner), np.concatenate(segment)
 
 
 def _is_free(stock: PlanningStock, tips: Floats, rows: Floats) -> Bools:
@@ -194,14 +220,20 @@ def _moves_with(met: Bools, segment: Ints) -> Ints:
     return np.union1d(segment[met], np.maximum(segment[met & begins] - 1, 0))
 
 
-def _pieces(one: Pass, blocked: Ints) -> tuple[list[slice], list[Pass]]:
-    """Return the pieces of a pass without some moves of it: which moves each has, and itself."""
+def _runs(one: Pass, blocked: Ints) -> list[slice]:
+    """Return the moves of each piece of a pass without some moves of it."""
     free = np.ones(len(one) - 1, dtype=bool)
     free[blocked] = False
     edges = np.flatnonzero(np.diff(free.astype(np.int8), prepend=0, append=0)).reshape(-1, 2)
-    found = [(slice(a, b), one.of(slice(a, b + 1))) for a, b in edges.tolist()]
-    kept = [(moves, piece) for moves, piece in found if piece.length >= SHORTEST]
-    return [moves for moves, _ in kept], [piece for _, piece in kept]
+    return [slice(a, b) for a, b in edges.tolist() if one.of(slice(a, b + 1)).length >= SHORTEST]
+
+
+def _is_in(runs: Sequence[slice], count: int) -> Bools:
+    """Return which of so many moves are in some runs of them."""
+    found = np.zeros(count, dtype=bool)
+    for moves in runs:
+        found[moves] = True
+    return found
 
 
 def _findings(area: float, over: float, drive: SurfaceDrive, tool: Tool) -> tuple[Finding, ...]:
