@@ -12,7 +12,7 @@ import samples
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import Engine
-from trunnion.tolerance import CONTACT_BOUND, FINISH_GOUGE
+from trunnion.tolerance import CONTACT_BOUND, FINISH_GOUGE, GOUGE
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(900)]
 
@@ -20,10 +20,12 @@ SEEDS = range(5)
 
 
 @cache
-def programmed(shape: Any) -> Session:
+def programmed(shape: Any, machine: str = "") -> Session:
     engine = Engine()
-    session = engine.with_choices(engine.open(samples.written(shape)), {"repair.rounds": 0})
-    return engine.run(session)
+    words: dict[str, Any] = {"repair.rounds": 0}
+    if machine:
+        words["setup.machine"] = machine
+    return engine.run(engine.with_choices(engine.open(samples.written(shape)), words))
 
 
 @pytest.mark.parametrize(
@@ -57,3 +59,13 @@ def test_random_leans_depths_and_radii_are_finished_without_a_gouge(seed: int) -
     verdict = programmed(leaning_pockets.random_block(seed)).verdict
     assert verdict is not None and verdict.releases, [str(f) for f in verdict.findings]
     assert verdict.reachable >= 0.99 and verdict.gouge <= FINISH_GOUGE and verdict.collisions == 0
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_random_leans_depths_and_radii_are_swarf_milled(seed: int) -> None:
+    session = programmed(leaning_pockets.random_block(seed), "Trunnion 650")
+    assert session.process is not None
+    assert "surface.swarf" in {o.strategy for o in session.process.operations}
+    verdict = session.verdict
+    assert verdict is not None and verdict.releases, [str(f) for f in verdict.findings]
+    assert verdict.reachable >= 0.99 and verdict.gouge <= GOUGE and verdict.collisions == 0

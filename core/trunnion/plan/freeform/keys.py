@@ -16,6 +16,8 @@ LAYER = "surface.layer"
 """Key of an operation's choices: height in mm of the steps that roughing leaves on slopes; where it is not said, its depth of cut."""
 EXTENSION = "surface.extension"
 """Key of an operation's choices: how far in mm its passes run on past free rims."""
+PAST_RIM = "surface.past_rim"
+"""Key of an operation's choices: how far in mm what it finishes of floors goes on past what hangs over them."""
 OVERHANG = "surface.overhang"
 """Key of an operation's choices: how thick in mm material stays on faces that hang over, which necks and shanks keep off; where it is not
 said, as much as earlier operations may leave."""

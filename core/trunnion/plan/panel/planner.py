@@ -5,16 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trunnion import tolerance
+from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
+from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.freeform.drive import SurfaceDrive
+from trunnion.plan.freeform.keys import PAST_RIM, number
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
 from trunnion.plan.holes.settings import DrillSettings, HoleSettings
-from trunnion.plan.panel.freeform.drives import freeform_drive, pocket_of
+from trunnion.plan.panel.freeform.drives import OVERHUNG_FLOOR, freeform_drive, pocket_of
+from trunnion.plan.panel.freeform.pocket import FreeformPocket
 from trunnion.plan.panel.freeform.settings import LeaningSettings
 from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.rules import TASK_MAKERS
@@ -51,6 +55,9 @@ class PanelPlanner:
             skin = job.context.skin(tolerance.SKIN_CHORD, job.progress)
             return SurfaceSpace.of(job.context.part, skin, job.blank, setup)
 
+        def leaning(space: SurfaceSpace, setup: Setup) -> ClearanceScene:
+            return job.context.around(setup, space.frame, space.skin, job.progress)
+
         return make_route(
             job.recognition,
             job.sizes,
@@ -62,6 +69,7 @@ class PanelPlanner:
             job.progress,
             choices=job.choices,
             curved=curved,
+            leaning=leaning,
         )
 
     def drive(
@@ -94,8 +102,17 @@ def _surface_driven(
     operation: Operation, needs: DriveNeeds, scene: Scene, progress: Progress
 ) -> OperationDrive:
     pocket = pocket_of(operation, _space(scene), scene, progress)
-    within = pocket.limit(pocket.top) if pocket is not None else None
+    within = None
+    if pocket is not None:
+        within = _own_area(operation, pocket, needs)
     return surface_driven(operation, needs, scene, progress, within)
+
+
+def _own_area(operation: Operation, pocket: FreeformPocket, needs: DriveNeeds) -> Region:
+    """Return the plan area that is a pocket's of the faces that an operation finishes."""
+    if operation.kind == OVERHUNG_FLOOR:
+        return pocket.overhung_floors(number(operation, PAST_RIM))[1]
+    return pocket.under_overhangs() if needs.leans else pocket.limit(pocket.top)
 
 
 def _space(scene: Scene) -> SetupSpace:

@@ -14,6 +14,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
@@ -86,6 +87,7 @@ def make_route(
     *,
     choices: Mapping[str, Value] | None = None,
     curved: Callable[[Setup], SurfaceSpace] | None = None,
+    leaning: Callable[[SurfaceSpace, Setup], ClearanceScene] | None = None,
 ) -> ProcessTree:
     """Return the process: operations in cutting order with tools numbered in the order of use, and findings on what is not planned.
 
@@ -93,7 +95,8 @@ def make_route(
     (`route.not-planned`); their material stays and the proof counts it. A cutter that does not exist is an error (`route.no-cutter`), so
     is a blank that the machine can't take (`route.travel`; nothing is planned then). The process has the setups that cut anything: where
     only one is given, the part is turned over for what that one can't reach. `choices` are a session's settings by full key.
-    `curved` returns the part's skin as a setup sees it: without it leaning walls and curved floors are not planned.
+    `curved` returns the part's skin as a setup sees it: without it leaning walls and curved floors are not planned. `leaning` returns the
+    clearance queries of leaning tools in a setup: without it none leans.
     """
     plan = typical_plan(shop, recognition.family, settings.plan, tuple(TASK_MAKERS))
     material = shop.material(blank.material)
@@ -107,6 +110,7 @@ def make_route(
     words = choices or {}
     setup_settings = choose(SetupSettings, words)
     freeform = curved is not None and {s.cutter for s in plan.stages} >= NEEDED
+    knows_swarf = any(s.cutter == "swarf" for s in plan.stages)
     planned, refusals = without_lonely_ribs(
         *plannable(recognition, plan.stages, freeform=freeform), recognition, near
     )
@@ -126,6 +130,7 @@ def make_route(
             choices=words,
             progress=progress,
             curved=partial(curved, setup) if curved is not None and freeform else None,
+            leaning=_leaning_in(setup, leaning, shop) if knows_swarf else None,
         )
         for setup in both_sides(setups, blank, shop, setup_settings)
     ]
@@ -149,6 +154,15 @@ def make_route(
     used = {o.setup for o in operations} or {states[0].space.setup.name}
     kept = [state.space.setup for state in states if state.space.setup.name in used]
     return process_of(operations, findings, plan=plan, material=material, setups=kept, shop=shop)
+
+
+def _leaning_in(
+    setup: Setup, leaning: Callable[[SurfaceSpace, Setup], ClearanceScene] | None, shop: Shop
+) -> Callable[[SurfaceSpace], ClearanceScene] | None:
+    """Return the clearance queries of leaning tools in a setup, None where its machine has no rotary axes."""
+    if leaning is None or not shop.machine(setup.machine).rotary:
+        return None
+    return lambda space: leaning(space, setup)
 
 
 def _with_cutters(

@@ -10,10 +10,18 @@ from trunnion.plan.panel.freeform.finishing_tasks import (
     curved_semi_tasks,
     floor_tasks,
     side_tasks,
+    swarf_floor_tasks,
 )
 from trunnion.plan.panel.freeform.overhang_tasks import overhang_rim_tasks
 from trunnion.plan.panel.freeform.roughing_tasks import layer_tasks, rest_layer_tasks
 from trunnion.plan.panel.freeform.slope_tasks import slope_rough_tasks, slope_tasks
+from trunnion.plan.panel.freeform.swarf_tasks import (
+    leaning_fillet_tasks,
+    overhung_floor_tasks,
+    swarf_foot_tasks,
+    swarf_rough_tasks,
+    swarf_tasks,
+)
 from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
 from trunnion.plan.panel.outline_tasks import OUTLINE_TASK_MAKERS
 from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, OperationTask, PanelPlanState
@@ -25,7 +33,13 @@ FREEFORM_TASK_MAKERS: Mapping[
     "layers": layer_tasks,
     "rest_layers": rest_layer_tasks,
     "leaning_floor": floor_tasks,
+    "swarf_floor": swarf_floor_tasks,
     "overhang_rim": overhang_rim_tasks,
+    "swarf_rough": swarf_rough_tasks,
+    "swarf": swarf_tasks,
+    "swarf_foot": swarf_foot_tasks,
+    "leaning_fillet": leaning_fillet_tasks,
+    "overhung_floor": overhung_floor_tasks,
     "sides": side_tasks,
     "curved_semi": curved_semi_tasks,
     "curved_floor": curved_floor_tasks,

@@ -16,6 +16,7 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
+from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.regions import (
     Band,
@@ -113,7 +114,7 @@ class PanelPlanState:
     `slopes` of those of which only what leans, and looks up here, is cut here too. `narrow` are those that are roughed by an end mill for
     narrow slots.
     `curved` returns the part's skin as the setup sees it, None where nobody has it; `freeform` is what the stages on leaning walls and
-    curved floors have found out."""
+    curved floors have found out. `leaning` returns the clearance queries of leaning tools among these faces, None where none may lean."""
 
     space: SetupSpace
     recognition: Recognition
@@ -135,6 +136,7 @@ class PanelPlanState:
     narrow: set[str] = field(default_factory=set)
     curved: Callable[[], SurfaceSpace] | None = None
     freeform: Any = None
+    leaning: Callable[[SurfaceSpace], ClearanceScene] | None = None
     progress: Progress = NO_PROGRESS
 
     def task_id(self, stage: Stage, feature: Feature) -> str:

@@ -48,7 +48,7 @@ class Pass:
             tip=self.tip[::-1], axis=self.axis[::-1], normal=self.normal[::-1], closed=self.closed
         )
 
-    def of(self, rows: Bools | slice) -> Pass:
+    def of(self, rows: Bools | Ints | slice) -> Pass:
         """Return a part of the pass; it is not closed."""
         return Pass(tip=self.tip[rows], axis=self.axis[rows], normal=self.normal[rows])
 

@@ -16,6 +16,8 @@ from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.progress import Progress
 
+OVERHUNG_FLOOR = "overhung_floor"
+"""The kind of operation that finishes what of floors something hangs over."""
 OVERHANG_RIM = "overhang_rim"
 """The kind of operation that goes along the upper edges of walls that lean over."""
 

@@ -30,6 +30,7 @@ from trunnion.plan.panel.freeform.cutters import (
     side_cutters,
     tool_change,
 )
+from trunnion.plan.panel.freeform.flank_choice import flank_of
 from trunnion.plan.panel.freeform.planning import (
     FreeformPlanning,
     kept_off,
@@ -46,6 +47,7 @@ from trunnion.plan.panel.tasks import (
     OperationTask,
     PanelPlanState,
 )
+from trunnion.plan.prismatic.regions import number
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
 from trunnion.settings import Value
 from trunnion.shop import Stage
@@ -57,6 +59,8 @@ FOOT = 2.0
 """degrees: at the foot of sides over level floors, what leans less from level is the floor's; a fillet ends in it."""
 OVERHANG_DISTANCE = 2.0
 """Times what layers leave: beside walls that lean over it stands as high as the pocket is deep, thicker in corners."""
+AFTER_FLANK = 0.1
+"""mm: what a floor's cutter keeps from sides that a flank has finished, and their fillets."""
 REST_LEAD = 0.3
 """mm: radius of leads in rest finishing: what is left lies beside faces that stand up."""
 SIDES_STRATEGY, FLOOR_STRATEGY = "surface.waterline", "surface.constant"
@@ -65,18 +69,33 @@ SIDES_STRATEGY, FLOOR_STRATEGY = "surface.waterline", "surface.constant"
 def floor_tasks(
     state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
+    """Ask for passes over level floors of pockets whose sides are finished after them, level by level."""
+    return _on_floors(state, stage, features, after_flank=False)
+
+
+def swarf_floor_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    """Ask for passes over level floors of pockets whose walls a flank has finished: up to their feet, which no waterline finishes."""
+    return _on_floors(state, stage, features, after_flank=True)
+
+
+def _on_floors(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature], *, after_flank: bool
+) -> list[OperationTask]:
     found = []
     for known, pocket in pockets_of(state, stage, features):
         floors, levels = pocket.floors()
-        if not floors:
+        if not floors or (flank_of(state, known, pocket) is not None) != after_flank:
             continue
-        distance = _floor_distance(state, known, pocket)
+        distance = AFTER_FLANK if after_flank else _distance_from_sides(state, known, pocket)
         areas = [(kept_off(v.boundary, distance), kept_off(v.wanted, distance)) for v in levels]
         requirement = ToolRequirement(
             depth=state.space.top - floors[-1].z,
             envelope_area=areas[-1][0],
             wanted=areas[-1][1],
             corner_radius=pocket.fillet,
+            radius=_through_corners(state, known, pocket, distance),
             missable=SHARP,
             near=NEAR_FLOOR,
             others=tuple(areas[:-1]),
@@ -101,7 +120,21 @@ def floor_tasks(
     return found
 
 
-def _floor_distance(
+def _through_corners(
+    state: PanelPlanState, known: FreeformPlanning, pocket: FreeformPocket, distance: float
+) -> float:
+    """Return the largest radius in mm of a cutter that finishes a pocket's floors at a distance (mm) from its sides, 0 for any: what it
+    leaves in corners is cut by the foot of waterlines, but not by a flank."""
+    if flank_of(state, known, pocket) is None:
+        return 0.0
+    graph, corner = state.space.part.graph(), number(pocket.feature, "corner_radius")
+    if any(graph.surface[t - 1] == "cone" for t in pocket.feature.with_role("corner")):
+        # A cone's radius is told half-way up; at its foot it is less where walls lean away.
+        corner -= 0.5 * pocket.growth * (pocket.top - pocket.bottom)
+    return max(corner * state.settings.corner_share - distance, 0.0)
+
+
+def _distance_from_sides(
     state: PanelPlanState, known: FreeformPlanning, pocket: FreeformPocket
 ) -> float:
     """Return what a floor's cutter keeps from the sides: it must not meet what layers leave there, which the foot of waterlines cuts."""
@@ -115,6 +148,8 @@ def side_tasks(
     found = []
     for known, pocket in pockets_of(state, stage, features):
         settings = known.settings
+        if flank_of(state, known, pocket) is not None:
+            continue
         samples, cutters = cutters_of(state, known, pocket, "sides", pocket.sides)
         report_unreached(state, pocket, samples, cutters)
         if cutters.tool is None:

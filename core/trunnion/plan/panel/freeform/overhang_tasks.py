@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
+from trunnion.plan.panel.freeform.flank_choice import flank_of
 from trunnion.plan.panel.freeform.planning import pocket_task, pockets_of
 from trunnion.plan.panel.tasks import NEAR_WALL, SHARP, OperationTask, PanelPlanState, catalogue
 from trunnion.plan.prismatic.regions import number
@@ -23,6 +24,9 @@ def overhang_rim_tasks(
     for known, pocket in pockets_of(state, stage, features):
         rims = pocket.overhang_rims()
         if not rims:
+            continue
+        # A flank that leans takes them with what stands under the wall; at sharp feet an upright end finishes the floor beside it besides.
+        if pocket.fillet > 0.0 and flank_of(state, known, pocket) is not None:
             continue
         levels = pocket.floors()[1]
         areas = tuple((v.boundary, v.wanted) for v in levels)

@@ -27,7 +27,8 @@ from trunnion.shop import Stage
 @dataclass(slots=True, kw_only=True)
 class FreeformPlanning:
     """What is known of a setup's freeform pockets while it is planned: their spaces, and the cutters of their sides and curved floors with
-    the samples that these were chosen by, all cutters that finish them by surface passes, and the ids of those whose overhang rims are cut.
+    the samples that these were chosen by, all cutters that finish them by surface passes, the ids of those whose overhang rims are cut, and
+    by their ids the cutters whose flank finishes walls of theirs, with the tags of these, and those for the feet of walls that lean over.
     """
 
     curved: SurfaceSpace
@@ -36,6 +37,8 @@ class FreeformPlanning:
     cutters: dict[tuple[str, str], tuple[AreaSamples, AreaCutters]] = field(default_factory=dict)
     finishing: dict[str, list[Tool]] = field(default_factory=dict)
     rims: set[str] = field(default_factory=set)
+    swarf: dict[str, tuple[Tool, tuple[int, ...]] | None] = field(default_factory=dict)
+    feet: dict[str, Tool | None] = field(default_factory=dict)
 
 
 def planning_of(state: PanelPlanState) -> FreeformPlanning | None:

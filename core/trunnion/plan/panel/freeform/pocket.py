@@ -32,6 +32,8 @@ from trunnion.plan.prismatic.regions import (
 
 MARGIN = 1.0
 """mm that the map of a pocket goes on past its rim."""
+LEAST_COVERED = 1.0
+"""mm2: less of a floor that something hangs over is none."""
 FLATTEST = math.radians(30.0)
 """Walls rise by at least this much from level: what rises less grows a pocket's rim by no more."""
 
@@ -136,8 +138,11 @@ class FreeformPocket:
 
     def holds(self, samples: AreaSamples) -> AreaSamples:
         """Return the samples that are the pocket's own, what hangs over among them: faces may run on into its neighbours."""
-        area = self.limit(self.top).offset(self.hang * (self.top - self.bottom))
-        return samples.of(area.contains(samples.point[:, :2]))
+        return samples.of(self.under_overhangs().contains(samples.point[:, :2]))
+
+    def under_overhangs(self) -> Region:
+        """Return the plan area that is the pocket's with all that lies under its walls that lean over."""
+        return self.limit(self.top).offset(self.hang * (self.top - self.bottom))
 
     def layer_area(self) -> LayerArea:
         """Return where the pocket is roughed by layers."""
@@ -189,6 +194,18 @@ class FreeformPocket:
                     for run in runs(curve, rim)
                 ]
         return tuple(found)
+
+    def overhung_floors(self, past: float) -> tuple[tuple[int, ...], Region]:
+        """Return the tags of level floors that something hangs over, and what of them it covers in plan, gone on by `past` mm."""
+        tags, areas = list[int](), list[Region]()
+        for tag in self.level:
+            z = float(self.space.centre(tag)[2])
+            outline = self.space.part.face_outline(self.space.setup.frame, tag)
+            covered = outline.intersect(self.space.hanging_over(z + tolerance.OFF_PLANE, outline))
+            if covered.area > LEAST_COVERED:
+                tags.append(tag)
+                areas.append(covered.offset(past).intersect(outline))
+        return tuple(tags), union_all(areas)
 
     def _found_floors(self) -> tuple[tuple[Floor, ...], tuple[DriveLevel, ...]]:
         space, found = self.space, []

@@ -57,6 +57,11 @@ class LeaningSettings:
         label="Semi-finishing scallop",
         help="Height of the ridges that semi-finishing leaves on its allowance.",
     )
+    swarf: bool = setting(
+        True,
+        label="Walls by the flank",
+        help="Where the machine has rotary axes leaning walls are swarf milled; else they are finished level by level.",
+    )
     steep: float = setting(
         60.0,
         unit="deg",
