@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     from trunnion.report.deviation import DeviationMap
 
 FRESH = ("done", "problem")
+"""States of a step whose result belongs to what it reads now."""
 _LAID = "toolpath"
 """The step after which a plan can be drawn."""
-"""States of a step whose result belongs to what it reads now."""
 
 
 class Engine:
