@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surface_drives import DATA, driven, grid, joined
+from funnels import funnel
+from surface_drives import DATA, driven, grid
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.motion.toolpath import Mark
 from trunnion.plan.freeform.swarf.guide_lines import GuideLine
 from trunnion.toolpath.contact_passes.contacts import slerp
@@ -160,35 +160,10 @@ def test_a_closed_line_with_a_gap_is_one_open_stretch() -> None:
     assert rows.tolist() == [5, 6, 7, 8, 9, 0, 1, 2, 3] and not closed
 
 
-def funnel(leans: tuple[float, ...], height: float) -> Skin:
-    """Return four walls round a square of 40 mm, each leaning away by its degrees, tags 1 to 4."""
-    corners = np.array([(0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (0.0, 40.0)])
-    inwards = np.array([(0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)])
-    a = np.radians(leans)
-    normals = np.column_stack([np.cos(a)[:, None] * inwards, np.sin(a)])
-    edges = np.cross(np.roll(normals, 1, axis=0), normals)
-    foot = np.column_stack([corners, np.zeros(4)])
-    rim = foot + height / edges[:, 2:] * edges
-    quads = []
-    for k in range(4):
-        n = (k + 1) % 4
-        points = np.array([foot[k], foot[n], rim[n], rim[k]])
-        quads.append(
-            Skin(
-                points=points,
-                normals=np.broadcast_to(normals[k], points.shape),
-                triangles=np.array([[0, 1, 2], [0, 2, 3]]),
-                face=np.full(2, k + 1),
-                bound=0.0,
-            )
-        )
-    return joined(*quads)
-
-
 @pytest.mark.parametrize("height", [8.0, 20.0, 33.0, 61.0])
 @pytest.mark.parametrize("leans", [(5.0,) * 4, (6.0, -4.0, 0.0, 3.0)])
 def test_walls_are_cut_over_all_their_height(height: float, leans: tuple[float, ...]) -> None:
-    skin, tool = funnel(leans, height), bull(8.0, 1.0)(flute=15.0)
+    skin, tool = funnel(leans, height=height), bull(8.0, 1.0)(flute=15.0)
     drive, setup, stock = driven(skin, faces=(1, 2, 3, 4), top=height)
     drive = replace(drive, query_for=lambda _: free)
     path = swarf(drive, tool, DATA, stock, setup, SwarfSettings()).path
