@@ -38,7 +38,7 @@ from trunnion.plan.panel.feasibility import (
     plannable,
     without_lonely_ribs,
 )
-from trunnion.plan.panel.rules import NEEDED, TASK_MAKERS
+from trunnion.plan.panel.rules import NEEDED, SWARF, TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.panel.sides import shared_out
 from trunnion.plan.panel.tasks import (
@@ -110,7 +110,7 @@ def make_route(
     words = choices or {}
     setup_settings = choose(SetupSettings, words)
     freeform = curved is not None and {s.cutter for s in plan.stages} >= NEEDED
-    knows_swarf = any(s.cutter == "swarf" for s in plan.stages)
+    knows_swarf = {s.cutter for s in plan.stages} >= SWARF
     planned, refusals = without_lonely_ribs(
         *plannable(recognition, plan.stages, freeform=freeform), recognition, near
     )

@@ -49,6 +49,8 @@ FREEFORM_TASK_MAKERS: Mapping[
 """The rule behind each word that a typical plan gives for the cutter of a stage on leaning walls, slopes and curved floors."""
 NEEDED = frozenset({"layers", "sides"})
 """Rules without which a typical plan knows no leaning walls."""
+SWARF = frozenset({"swarf", "swarf_floor"})
+"""Rules without which a typical plan swarf mills nothing: floors under walls that a flank finishes come after these."""
 TASK_MAKERS = {
     **PLANE_TASK_MAKERS,
     **OUTLINE_TASK_MAKERS,

@@ -149,9 +149,6 @@ def _thinned(poses: Pass, flank: float, chord: float) -> Ints:
     n = len(poses)
     gone = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(poses.tip, axis=0), axis=1))])
     kept, open_blocks = {0, n - 1}, [(0, n - 1)]
-    if poses.closed:
-        kept.add(n // 2)
-        open_blocks = [(0, n // 2), (n // 2, n - 1)]
     while open_blocks:
         a, b = open_blocks.pop()
         if b - a < 2:
