@@ -14,13 +14,12 @@ from functools import cached_property
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.geometry.sphere import angle_between
+from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.toolpath.contact_passes.axis_search import thickened
-from trunnion.toolpath.contact_passes.contacts import slerp
+from trunnion.toolpath.contact_passes.tool_moves import ToolMoves
 from trunnion.toolpath.stock.remaining import NEAR
 
 STOCK_SHARE, LEAST_STOCK = 2.0, NEAR
@@ -77,7 +76,7 @@ class StockClearance:
             starts = [None if v is None else v[some] for v in (start_tip, start_axis)]
             clear[some] = query(tip[some], axis[some], start_tip=starts[0], start_axis=starts[1])
             if start_tip is not None and clear.any():
-                moves = _Moves(start_tip, axis if start_axis is None else start_axis, tip, axis)
+                moves = ToolMoves(start_tip, axis if start_axis is None else start_axis, tip, axis)
                 clear &= self._is_free_along(moves, clear, bodies)
             return clear
 
@@ -124,7 +123,7 @@ class StockClearance:
     ) -> Bools:
         """Return which rapids (k,) from tips (k, 3) with axes (k, 3) to others keep the thickness off everything all along: the tip goes
         straight, the axis turns evenly."""
-        rapids = _Moves(start_tip, start_axis, tip, axis)
+        rapids = ToolMoves(start_tip, start_axis, tip, axis)
         way, tips, axes = rapids.poses(np.ceil(rapids.turn / PIECE))
         # A grown tool's tip is lower by the thickness; within a piece that goes straight too, or nearly so.
         low, first = tips - self.thickness * axes, np.flatnonzero(np.diff(way) == 0)
@@ -138,7 +137,7 @@ class StockClearance:
         return clear
 
     def _is_free_along(
-        self, moves: _Moves, some: Bools, bodies: Sequence[tuple[float, Cones]]
+        self, moves: ToolMoves, some: Bools, bodies: Sequence[tuple[float, Cones]]
     ) -> Bools:
         """Return which of some moves (k,) keep the tool out of what stands beyond all along; of the others, all do.
 
@@ -163,42 +162,6 @@ class StockClearance:
     @cached_property
     def _body(self) -> Cones:
         return _whole_body(self.tool, self.thickness)
-
-
-class _Moves:
-    """Straight ways of tips (k, 3) whose axes (k, 3) turn evenly: how far they `travel`, mm, and `turn`, rad (k,)."""
-
-    def __init__(self, start_tip: Floats, start_axis: Floats, tip: Floats, axis: Floats) -> None:
-        self._ends = (start_tip, start_axis, tip, axis)
-        self.travel = np.linalg.norm(tip - start_tip, axis=1)
-        self.turn = angle_between(start_axis, axis)
-
-    def of(self, rows: Ints) -> _Moves:
-        """Return some of the moves."""
-        return _Moves(*(v[rows] for v in self._ends))
-
-    def poses(self, pieces: Floats) -> tuple[Ints, Floats, Floats]:
-        """Return the poses that part each way in so many equal pieces (k,), its ends among them: its number (p,), tips and axes (p, 3)."""
-        count = np.maximum(pieces, 1.0).astype(np.int64)
-        way, number = _numbered(count + 1)
-        return self._at(way, number / count[way])
-
-    def middles(self, pieces: Floats) -> tuple[Ints, Floats, Floats]:
-        """Return the poses in the middles of so many equal pieces (k,) of each way: its number (p,), tips and axes (p, 3)."""
-        count = np.maximum(pieces, 1.0).astype(np.int64)
-        way, number = _numbered(count)
-        return self._at(way, (number + 0.5) / count[way])
-
-    def _at(self, way: Ints, share: Floats) -> tuple[Ints, Floats, Floats]:
-        start_tip, start_axis, tip, axis = (v[way] for v in self._ends)
-        tips = start_tip + share[:, None] * (tip - start_tip)
-        return way, tips, slerp(start_axis, axis, share)
-
-
-def _numbered(count: Ints) -> tuple[Ints, Ints]:
-    """Return for `count` (k,) items of each of k things which one (p,) each is of, and its number (p,) there."""
-    of = np.repeat(np.arange(len(count)), count)
-    return of, np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
 
 
 def grown(tool: Tool, thickness: float) -> Tool:

@@ -25,8 +25,9 @@ from trunnion.plan.freeform.swarf.guide_lines import GuideLine, guide_lines
 from trunnion.plan.freeform.swarf.level_sections import level_sections
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.contact_passes.flank_passes import flank_passes, lifts, stretches
-from trunnion.toolpath.contact_passes.linking.link_passes import linked
+from trunnion.toolpath.contact_passes.flank.flank_passes import flank_passes, lifts, stretches
+from trunnion.toolpath.contact_passes.flank.flank_stock import FlankStock
+from trunnion.toolpath.contact_passes.linking.link_passes import extended_in_order, linked_in_order
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.stock_clearance import (
     LEAST_STOCK,
@@ -129,8 +130,10 @@ def swarf(
         query=query,
         link_clearance=around,
     )
-    path = linked(
-        found.passes, drive, tool, data, stock, setup, parameters, progress.part(0.6, 1.0)
+    passes = extended_in_order(found.passes, drive, tool, parameters, progress.part(0.6, 0.65))
+    parameters = replace(parameters, pass_stock=FlankStock(passes, tool, stock))
+    path = linked_in_order(
+        passes, drive, tool, data, stock, setup, parameters, progress.part(0.65, 1.0)
     )
     return Planned(path=path, findings=findings)
 

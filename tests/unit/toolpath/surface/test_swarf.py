@@ -15,7 +15,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.model.motion.toolpath import Mark
 from trunnion.plan.freeform.swarf.guide_lines import GuideLine
 from trunnion.toolpath.contact_passes.contacts import slerp
-from trunnion.toolpath.contact_passes.flank_passes import (
+from trunnion.toolpath.contact_passes.flank.flank_passes import (
     flank_passes,
     lifts,
     poses_on,

@@ -188,8 +188,8 @@ def _free_moves(
     if parameters.query is not None:
         clear &= parameters.query(end, axis, start_tip=start, start_axis=axis)
     if parameters.pass_stock is not None:
-        rows = np.flatnonzero(np.abs(axis - UPRIGHT).max(axis=1) < SAME)
-        clear[rows] &= parameters.pass_stock.is_free(end[rows], cut[rows])
+        rows = np.flatnonzero(clear)
+        clear[rows] = parameters.pass_stock.is_free(end[rows], axis[rows], cut[rows])
     return clear
 
 

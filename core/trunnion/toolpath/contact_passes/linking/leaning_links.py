@@ -23,9 +23,12 @@ from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.linking.leads import Leads
 from trunnion.toolpath.contact_passes.linking.parameters import NEAR, LinkParameters, is_upright
 from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contact_passes.tool_moves import ToolMoves
 
 MOST_TURN = math.radians(45.0)
 """Largest turn of the axis between two leads that are near each other: beyond, the tool is led through the air."""
+APART = 0.5
+"""mm that no place of the tool goes between two poses of a way at which stock is asked for."""
 HEIGHTS = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 """mm along their axes that both ends of a way through the air are off the leads at least, the lowest first."""
 
@@ -94,12 +97,16 @@ class LeaningLinks:
             near[rows] & (turn[rows] <= parameters.turn * away[rows] + tolerance.PARAMETRIC)
         ]
         straight = slow[self._is_clear(slow, self.end, self.start, query)]
+        straight = straight[
+            self._is_free(straight, self.end, self.start, tool.gauge_length, parameters)
+        ]
         near |= away <= tool.radius
         rows = rows[near[rows] & (turn[rows] <= MOST_TURN)]
         rows = rows[~np.isin(rows, straight)]
         # A tool that turns where it touches the face would leave a mark: leads that have no radius are none.
         rows = rows[(self._lengths_of_leads(rows) > tolerance.SHORT_MOVE).all(axis=1)]
         led = rows[self._is_clear(rows, self.lead_end, self.lead_start, query)]
+        led = led[self._is_free(led, self.lead_end, self.lead_start, tool.gauge_length, parameters)]
         return {
             **{k: (self._onto_pass(k, Mark.LINK),) for k in straight.tolist()},
             **{
@@ -183,6 +190,17 @@ class LeaningLinks:
             start_tip=tips[rows],
             start_axis=self.end_axis[rows],
         )
+
+    def _is_free(
+        self, rows: Ints, tips: Floats, others: Floats, reach: float, parameters: LinkParameters
+    ) -> Bools:
+        """Return on which pairs' ways from tips to others (m - 1, 3) a tool that reaches so far (mm) meets no stock above its flutes."""
+        if parameters.pass_stock is None or not len(rows):
+            return np.ones(len(rows), dtype=bool)
+        moves = ToolMoves(tips[rows], self.end_axis[rows], others[rows], self.start_axis[rows])
+        way, tip, axis = moves.poses(np.ceil((moves.travel + reach * moves.turn) / APART))
+        is_free = parameters.pass_stock.is_free(tip, axis, rows[way] + 1)
+        return np.bincount(way, ~is_free, len(rows)) == 0.0
 
 
 def _moves(tips: Floats, axis: Floats, mark: Mark, *, rapid: bool = False) -> LinkMoves:

@@ -21,7 +21,7 @@ from trunnion.toolpath.contact_passes.extension import extended
 from trunnion.toolpath.contact_passes.linking.blocks import Blocks
 from trunnion.toolpath.contact_passes.linking.leads import Leads, leads_of
 from trunnion.toolpath.contact_passes.linking.leaning_links import LeaningLinks, Link, LinkMoves
-from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters, is_upright
+from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.linking.pass_order import ordered
 from trunnion.toolpath.contact_passes.linking.surface_links import (
     free_of_stock,
@@ -132,14 +132,12 @@ def _surface_links(
         tips = surface_links(passes, near, drive, tool, parameters, progress)
     rows = np.flatnonzero(near).tolist()
     whole = [np.vstack([passes[k].tip[-1:], w]) for k, w in zip(rows, tips, strict=True)]
-    upright = [n for n, k in enumerate(rows) if is_upright(passes[k + 1].axis[0])]
-    is_free = np.ones(len(rows), dtype=bool)
-    is_free[upright] = free_of_stock(
-        [whole[n] for n in upright], [rows[n] + 1 for n in upright], parameters
+    is_free = free_of_stock(
+        whole, [passes[k + 1].axis[0] for k in rows], [k + 1 for k in rows], parameters
     )
     return {
         k: (LinkMoves(tip=w, axis=np.broadcast_to(passes[k + 1].axis[0], w.shape), mark=Mark.LINK),)
-        for k, w, free in zip(rows, tips, is_free.tolist(), strict=True)
+        for k, w, free in zip(rows, tips, is_free, strict=True)
         if free
     }
 
@@ -163,5 +161,6 @@ def _retreats(
         # Flutes that came from the side, under stock that the neck went by, would go up through it.
         left = np.append(np.flatnonzero(far), len(passes) - 1)
         tips = leads.lead_out[left, -1]
-        retract[left] = np.maximum(parameters.pass_stock.tops(tips, left + 1) - tips[:, 2], 0.0)
+        over = parameters.pass_stock.tops(tips, left + 1) - tips[:, 2]
+        retract[left] = np.maximum(retract[left], over)
     return approach, retract

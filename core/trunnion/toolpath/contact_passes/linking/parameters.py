@@ -19,10 +19,10 @@ SAME = 1e-9
 
 
 class PassStock(Protocol):
-    """What stands beside passes of an upright tool while they are cut in their order (`upright.stock_contact`)."""
+    """What stands beside passes of a tool while they are cut in their order (`upright.stock_contact`, `flank.flank_stock`)."""
 
-    def is_free(self, tips: Floats, cut: Ints) -> Bools:
-        """Return at which tips (k, 3) the tool meets no stock above its flutes when so many passes (k,) are cut."""
+    def is_free(self, tips: Floats, axes: Floats, cut: Ints) -> Bools:
+        """Return at which tips with axes (k, 3) the tool meets no stock above its flutes when so many passes (k,) are cut."""
 
     def tops(self, tips: Floats, cut: Ints) -> Floats:
         """Return how high (k,) mm stock stands within the cutter's radius of tips (k, 3) when so many passes (k,) are cut; minus infinity
@@ -48,7 +48,7 @@ class LinkParameters:
     "nearest" or "shorter", which is nearest where that takes the tool less far through the air; `reversing` allows passes to be cut the
     other way where that is nearer; `chord` is the chord error of links, mm. With `arcs` a near pass is reached by the leads of both, and
     above the stock where these have no space: for walls, beside which a cutter that follows the surface would be lifted to their tops.
-    Closed passes go on over their start by the `overlap` in mm. Of upright tools `pass_stock` says where leads and links may go.
+    Closed passes go on over their start by the `overlap` in mm. `pass_stock` says where leads and links may go for what stands.
 
     Of leaning tools: `query` says which straight moves are clear, `link_clearance` which rapids are (None: any along the axis, none
     across); on a mm over the surface the axis turns by no more than `turn` rad.

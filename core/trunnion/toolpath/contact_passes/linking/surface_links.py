@@ -109,14 +109,20 @@ def is_over(
 
 
 def free_of_stock(
-    links: Sequence[Floats], cut: Sequence[int], parameters: LinkParameters
+    links: Sequence[Floats],
+    axes: Sequence[Floats],
+    cut: Sequence[int],
+    parameters: LinkParameters,
 ) -> list[bool]:
-    """Return along which links, tips (k, 3) each, an upright tool meets no stock above its flutes when so many passes are cut."""
+    """Return along which links, tips (k, 3) each, a tool meets no stock above its flutes when so many passes are cut; it keeps the axis
+    (3,) of each."""
     if parameters.pass_stock is None or not links:
         return [True] * len(links)
     tips = [spaced(link, APART)[0] for link in links]
     number = np.repeat(np.arange(len(tips)), [len(t) for t in tips])
-    is_free = parameters.pass_stock.is_free(np.concatenate(tips), np.asarray(cut)[number])
+    is_free = parameters.pass_stock.is_free(
+        np.concatenate(tips), np.asarray(axes)[number], np.asarray(cut)[number]
+    )
     return (np.bincount(number, ~is_free, len(tips)) == 0.0).tolist()
 
 

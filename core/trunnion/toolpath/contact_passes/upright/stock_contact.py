@@ -46,14 +46,14 @@ SMALLEST_LEFTOVER = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _PassStock:
-    """Stock beside passes of a tool that are cut in their order (`linking.parameters.PassStock`)."""
+    """Stock beside passes of an upright tool that are cut in their order (`linking.parameters.PassStock`)."""
 
     stock: CutStock
     passes: Sequence[Pass]
     tool: Tool
     progress: Progress
 
-    def is_free(self, tips: Floats, cut: Ints) -> Bools:
+    def is_free(self, tips: Floats, axes: Floats, cut: Ints) -> Bools:
         found = np.ones(len(tips), dtype=bool)
         for stock, rows in self._moments(cut):
             found[rows] = stock.is_free(tips[rows])

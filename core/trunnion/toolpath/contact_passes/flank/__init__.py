@@ -1,0 +1,1 @@
+"""Passes of a flank along guide lines, and the stock beside them."""
