@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from trunnion import registry
+from trunnion.findings import Finding
 from trunnion.geometry.frame import Frame
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.session import Session
 from trunnion.pipeline.planning.scene import SetupScene
 from trunnion.pipeline.turning import empty_path
-from trunnion.plan.contract import DriveNeeds, OperationDrive, Planner, ToolAxis
+from trunnion.plan.contract import DriveNeeds, LazyDrive, OperationDrive, Planner, ToolAxis
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
@@ -23,6 +24,21 @@ from trunnion.toolpath.motion.ground_links import over_ground
 from trunnion.toolpath.motion.reorient import clearance_sphere, led_away, moved_over
 from trunnion.toolpath.motion.rolled import laid_flat, rolled
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.stock_reads import StockBox
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class CopyResult:
+    """What was made of a job before its turn: the strategy's path, None where there is nothing to cut, and the findings of its drive, which
+    need not be made again."""
+
+    planned: Planned | None
+    findings: tuple[Finding, ...]
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to cut."""
+        return self.planned is None
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -69,6 +85,23 @@ class PathJob:
     def is_empty(self) -> bool:
         """Whether there is nothing to cut."""
         return self.driven.drive.is_empty
+
+    def ahead(self, progress: Progress) -> CopyResult:
+        """Return the path on the stock of the moment, with all that others need of the drive; raise `Refused` where there is none."""
+        findings = self.driven.findings
+        planned = None if self.is_empty else self.planned(progress)
+        return CopyResult(planned=planned, findings=findings)
+
+    def takes(self, other: PathJob, made: CopyResult) -> bool:
+        """Return whether this job would come to what was made of another one, of the same operation, before the stock was this one."""
+        box = self._nowhere() if made.planned is None else made.planned.stock_box
+        return self.stock.digest_in(box) == other.stock.digest_in(box) and digest(
+            *self._identity()
+        ) == digest(*other._identity())
+
+    def known_by(self, made: CopyResult) -> PathJob:
+        """Return this job with what was made of it in place of its drive."""
+        return replace(self, driven=replace(self.driven, lazy=LazyDrive.of(made, made.findings)))
 
     def kept(self, session: Session) -> OperationPath | None:
         """Return the toolpath that a session has, where all it depends on is the same; or the empty one of what finds nothing to cut."""
@@ -127,12 +160,15 @@ class PathJob:
 
     def _empty(self, key: str) -> OperationPath:
         """Return the empty path of a drive that is empty wherever stock stands."""
-        nowhere = self.stock.recorded().box_read()
+        nowhere = self._nowhere()
         return replace(
             empty_path(self.operation, key),
             stock_box=nowhere,
             stock_key=self.stock.digest_in(nowhere),
         )
+
+    def _nowhere(self) -> StockBox:
+        return self.stock.recorded().box_read()
 
     def cut(self, made: OperationPath, progress: Progress) -> bool:
         """Take a path off the stock, and leave the tool where it ends; return whether the stock is another one then."""
@@ -156,8 +192,12 @@ class PathJob:
         return changed
 
     def _key(self) -> str:
+        return digest(*self._identity(), self.scene.before(self.operation.cutter))
+
+    def _identity(self) -> tuple[Any, ...]:
+        """Return all that the strategy's path depends on but the stock."""
         operation, driven = self.operation, self.driven
-        return digest(
+        return (
             operation.strategy,
             driven.identity,
             # Its number is that of the order of use, which other operations change.
@@ -165,7 +205,6 @@ class PathJob:
             operation.data,
             self.settings,
             driven.setup,
-            self.scene.before(operation.cutter),
         )
 
     def _with_drive_findings(self, made: OperationPath) -> OperationPath:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from trunnion.findings import Cancelled, Refused, info
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.pipeline import Engine, path_jobs
 from trunnion.pipeline.toolpaths import make_paths
-from trunnion.plan.contract import planner_for
+from trunnion.plan.contract import LazyDrive, planner_for
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import settings
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
@@ -78,7 +79,39 @@ def fail(drive, tool, data, stock, setup, settings, progress):
     raise ZeroDivisionError("of a test")
 
 
-OWN = {f.__name__: f for f in (lean, stand, cut, refuse, fail)}
+def slot(stock, setup, share):
+    """Return an upright path across the stock at a share of its width, a little lower than all that stands within 5 mm of it."""
+    x, y = stock.corner + stock.cell * np.array(stock.field.shape) * (share, 0.5)
+    start, end = np.array([x, y]), np.array([x, y + 10.0])
+    deep = stock.height(start, end, 5.0) - 0.5
+    tips = np.array([[*start, setup.clearance], [*start, deep], [*end, deep]])
+    return Planned(
+        path=Toolpath(
+            position=tips,
+            axis=np.tile(UPRIGHT, (3, 1)),
+            motion=np.array([Motion.RAPID, Motion.LINE, Motion.LINE]),
+            feed=np.array([0.0, 100.0, 100.0]),
+            mark=np.array([Mark.RETRACT, Mark.ENTRY, Mark.CUT]),
+            centre=np.full((3, 3), np.nan),
+        ),
+        findings=(info("test.process", str(os.getpid())), info("test.stock", f"{deep:.6f}")),
+    )
+
+
+@strategy(settings=NoSettings)
+def left(drive, tool, data, stock, setup, settings, progress):
+    """Cut a slot on the left, slowly."""
+    time.sleep(0.1)
+    return slot(stock, setup, 0.1)
+
+
+@strategy(settings=NoSettings)
+def right(drive, tool, data, stock, setup, settings, progress):
+    """Cut a slot on the right."""
+    return slot(stock, setup, 0.9)
+
+
+OWN = {f.__name__: f for f in (lean, stand, cut, refuse, fail, left, right)}
 
 
 @pytest.fixture(scope="module")
@@ -96,9 +129,11 @@ def made(routed, monkeypatch):
     engine, session = routed
     first = session.process.operations[0]
 
-    def make(names, beside=2, progress=NO_PROGRESS, kept=()):
+    def make(names, beside=2, progress=NO_PROGRESS, kept=(), features=()):
         monkeypatch.setattr(path_jobs, "copies", lambda: beside)
         own = tuple(replace(first, id=f"own-{n}", strategy=s) for n, s in enumerate(names))
+        if features:
+            own = tuple(replace(o, feature=f) for o, f in zip(own, features, strict=True))
         process = replace(session.process, operations=own)
         return make_paths(replace(session, process=process, paths=kept), engine.context, progress)
 
@@ -231,3 +266,97 @@ def test_its_path_is_stale_when_what_they_cut_is_another(made, cuts_known):
     again = made(["lean", "lean", "finish"])
     other = replace(again[2], operation="own-1")
     assert made(["lean", "finish"], kept=(first[0], other))[1].key == first[1].key != other.key
+
+
+@pytest.fixture
+def all_ahead(monkeypatch):
+    """Has every path be worth a copy, as long as any are kept."""
+    monkeypatch.setattr(path_jobs, "LEAST_S", 0.0)
+
+
+def made_here(paths):
+    return [int(told(p, "test.process")) == os.getpid() for p in paths]
+
+
+@can_copy
+def test_upright_paths_elsewhere_are_made_ahead_and_kept(made, all_ahead) -> None:
+    names = ["left", "right", "left", "right", "left", "right"]
+    paths = made(names, features=names)
+    # The first of each strategy is timed here; the last of all has nothing to go on beside.
+    assert made_here(paths) == [True, True, False, False, False, True]
+    deep = [float(told(p, "test.stock")) for p in paths]
+    assert np.diff(deep[::2]) == pytest.approx(-0.5) and np.diff(deep[1::2]) == pytest.approx(-0.5)
+
+
+@can_copy
+def test_a_path_on_stock_that_was_cut_since_is_made_anew(made, all_ahead) -> None:
+    names = ["left", "left", "left", "left", "left"]
+    paths = made(names, features=[f"pocket-{n}" for n in range(5)])
+    deep = [float(told(p, "test.stock")) for p in paths]
+    assert np.diff(deep) == pytest.approx(-0.5)
+    # The first one ahead was alone; the next began before it was cut off.
+    assert made_here(paths)[:3] == [True, False, True]
+
+
+@can_copy
+def test_upright_tools_on_the_same_feature_wait_for_each_other(made, all_ahead) -> None:
+    names = ["left", "left", "left", "left", "left"]
+    assert made_here(made(names)) == [True, False, False, False, True]
+
+
+@can_copy
+def test_nothing_is_made_ahead_any_more_where_it_was_for_nothing(made, all_ahead) -> None:
+    names = ["left"] * 16
+    paths = made(names, features=[f"pocket-{n}" for n in range(16)])
+    here = made_here(paths)
+    assert False in here[:8] and all(here[12:])
+
+
+@can_copy
+def test_behind_many_leaning_tools_an_upright_one_is_made_too(made, all_ahead) -> None:
+    names = ["left", *["lean"] * 12, "left", "right"]
+    paths = made(names, features=names)
+    assert not made_here(paths)[-2] and len(paths) == 15
+
+
+@can_copy
+def test_a_drive_that_looks_at_the_paths_before_it_waits_for_them(
+    made, all_ahead, routed, monkeypatch
+) -> None:
+    planner = type(planner_for(routed[1].recognition.family))
+    drive, seen = planner.drive, []
+
+    def looking(self, operation, needs, scene, progress):
+        driven = drive(self, operation, needs, scene, progress)
+
+        def make():
+            seen.append(len(scene.laid))
+            return driven.lazy.made()
+
+        return replace(driven, lazy=LazyDrive(make))
+
+    monkeypatch.setattr(planner, "drive", looking)
+    names = ["left", "right", "left", "right", "left"]
+    assert all(made_here(made(names, features=names)))
+    assert seen == [0, 1, 2, 3, 4]
+
+
+@can_copy
+def test_short_work_is_done_here(made) -> None:
+    names = ["left", "right", "left", "right"]
+    assert all(made_here(made(names, features=names)))
+
+
+@can_copy
+@pytest.mark.parametrize("seed", range(6))
+def test_paths_made_ahead_are_those_made_in_turn(made, all_ahead, seed: int) -> None:
+    pick = np.random.default_rng(seed)
+    names = pick.choice(["left", "right", "cut", "lean", "refuse", "stand"], 9).tolist()
+    features = pick.choice(["one", "two", "three"], 9).tolist()
+    ahead, turn = made(names, features=features), made(names, beside=0, features=features)
+    assert [p.key for p in ahead] == [p.key for p in turn]
+    assert [p.stock_key for p in ahead] == [p.stock_key for p in turn]
+    for one, other in zip(ahead, turn, strict=True):
+        assert (one.path.position == other.path.position).all()
+        texts = ([f.text for f in p.findings if f.code != "test.process"] for p in (one, other))
+        assert next(texts) == next(texts)
