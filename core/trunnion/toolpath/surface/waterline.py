@@ -35,12 +35,13 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
     FacetSlopes,
     slopes_of,
 )
+from trunnion.toolpath.contact_passes.upright.foot_heights import UPWARD, lowest_tips
 from trunnion.toolpath.contact_passes.upright.stock_trimming import sample_count, trimmed_to_stock
 from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, spread
 from trunnion.toolpath.contact_passes.upright.tracing import thinned
 from trunnion.toolpath.contact_passes.upright.upright_path import linked_without_contact
 from trunnion.toolpath.contact_passes.upright.wall_foot import foot_passes
-from trunnion.toolpath.contact_passes.upright.wall_levels import UPWARD, lowest_tips, with_levels
+from trunnion.toolpath.contact_passes.upright.wall_levels import with_levels
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock

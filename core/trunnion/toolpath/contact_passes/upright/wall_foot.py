@@ -16,8 +16,8 @@ from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.passes import Pass
+from trunnion.toolpath.contact_passes.upright.foot_heights import FOOT, OFF
 from trunnion.toolpath.contact_passes.upright.tracing import follow
-from trunnion.toolpath.contact_passes.upright.wall_levels import FOOT, OFF
 
 LEAST = 0.05
 """mm: a foot that is no farther under a level, or over the next one, has no pass of its own."""

@@ -1,4 +1,4 @@
-"""Levels of waterlines: how low a cutter comes on each triangle of steep faces, and how far apart its passes lie over them.
+"""Levels of waterlines: how far apart the passes of a cutter lie over triangles of steep faces.
 
 Upright walls want few levels, a flank's height apart, leaning ones as many as their scallops ask for: where it pays each kind gets its
 own levels.
@@ -6,76 +6,21 @@ own levels.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Floats
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutters.cutter import lower_side
-from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.stepover.spacing import FacetSlopes, level_spacing, marched
+from trunnion.toolpath.contact_passes.upright.foot_heights import FOOT, UPWARD, WallFoot
 
-UPWARD = -math.sin(tolerance.ANGLE)
-"""The least part along z of normals of upright walls."""
 BELOW_TOP = 0.1
 """Of a step: how far the last level lies below the highest position."""
 FLANK = 0.8
 """Of the flutes' length over the corner: the largest step beside an upright wall."""
-FOOT = 5e-4
-"""mm over what stops a cutter at the foot of an upright wall: there its lowest level is."""
-OFF = 2e-3
-"""mm off an upright wall: there a cutter comes down past it."""
 OPEN = 100.0
 """mm of feed that leads and links of a level cost which is open because upright walls have levels of their own."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class WallFoot:
-    """How low (m,) the tip comes that touches each triangle: lower than it only where the foot of an upright one stops it; and the height
-    of the highest such foot, -inf where there is none."""
-
-    low: Floats
-    highest_foot: float
-
-    def some(self, which: Bools, highest_foot: float) -> WallFoot:
-        """Return those of some of the triangles, whose highest foot is given."""
-        return WallFoot(self.low[which], highest_foot)
-
-
-def lowest_tips(
-    slopes: FacetSlopes, drive: SurfaceDrive, tool: Tool, progress: Progress
-) -> WallFoot:
-    """Return how low the tip comes on each triangle, and where the foot of upright walls is highest."""
-    low, high = slopes.tips[:, :, 2].min(axis=1), slopes.tips[:, :, 2].max(axis=1)
-    upright = np.flatnonzero(slopes.normal[:, 2] <= -UPWARD)
-    shifted = (slopes.tips[upright] + OFF * slopes.normal[upright, None])[:, :, :2].reshape(-1, 2)
-    # Triangles share their corners.
-    _, first, of = np.unique(
-        np.round(shifted / tolerance.COINCIDENT).astype(np.int64),
-        axis=0,
-        return_index=True,
-        return_inverse=True,
-    )
-    drive.skin.made_ready(progress)
-    over = drive.skin.drop.drop(
-        shifted[first],
-        lower_side(tool, drive.allowance),
-        float(drive.low[2]) - tool.flute_length,
-        progress,
-    )
-    stops = (over[of.ravel()] + drive.allowance + FOOT).reshape(-1, 3)
-    stopped = stops.min(axis=1)
-    # Where it is stopped over the whole triangle, the foot is another one's.
-    low[upright] = np.where(
-        stopped < high[upright], np.maximum(low[upright], stopped), high[upright]
-    )
-    # Where another wall stands in its way it is stopped by the top of that one, which is no foot.
-    feet = stops[stops < high[upright, None]]
-    return WallFoot(low, float(feet.max(initial=-np.inf)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
