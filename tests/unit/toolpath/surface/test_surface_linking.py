@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from surface_drives import DATA, driven, grid
+from surface_drives import DATA, driven, grid, joined
 from trunnion.model.motion.toolpath import Mark, Motion
 from trunnion.plan.freeform.cutters.cutter import lower_side
 from trunnion.tolerance import FINISH_GOUGE
@@ -240,3 +240,30 @@ def test_off_a_pass_that_ends_at_a_steep_wall_the_tool_is_fed_up_past_what_stand
     assert path.motion[-2:].tolist() == [Motion.LINE, Motion.RAPID]
     level, _, _ = made([straight((5, 10, 0), (11.9, 10, 0))])
     assert level.position[-2, 2] == pytest.approx(MANNER.lead_radius)
+
+
+@pytest.mark.parametrize("at_end", [True, False])
+def test_a_lead_does_not_take_the_shank_onto_a_step_beside_the_pass(at_end) -> None:
+    """A floor 16.5 mm below a step, the shank 16 mm over the tip: the pass ends 0.25 mm before the step comes under the shank."""
+    slim = replace(
+        bull(2.0, 1.0)(flute=3.0),
+        neck_diameter=1.9,
+        neck_length=16.0,
+        shank_diameter=4.0,
+        stickout=30.0,
+    )
+    skin = joined(
+        grid(lambda x, y: 0.0 * x, n=8, high=(20.0, 30.0)),
+        grid(lambda x, y: 0.0 * x + 16.5, n=8, low=(22.0, 0.0)),
+    )
+    drive, setup, stock = driven(skin, top=17.0)
+    pass_ends = [(5.0, 15.0, 0.0), (19.75, 15.0, 0.0)]
+    one = straight(*(pass_ends if at_end else pass_ends[::-1]))
+    path = linked([one], drive, slim, DATA, stock, setup, MANNER)
+    share = np.linspace(0.0, 1.0, 50)[:, None, None]
+    starts = path.starts()
+    on = (starts + share * (path.position - starts)).reshape(-1, 3)
+    under = (np.abs(on[:, 0] - 22.0) < 2.0) | (on[:, 0] > 22.0)
+    assert (on[under, 2] + 16.0 > 16.5 - 0.001).all()
+    # At the other end there is space for the circle.
+    assert path.position[:, 0].min() == pytest.approx(4.0)

@@ -11,7 +11,7 @@ import numpy as np
 from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints, unit
 from trunnion.model.tool import Tool
-from trunnion.plan.freeform.cutters.cutter import lower_side
+from trunnion.plan.freeform.cutters.cutter import level_disc, lower_side
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.progress import Progress
 from trunnion.toolpath.contact_passes.linking.parameters import SAME, LinkParameters, is_upright
@@ -62,16 +62,16 @@ def leads_of(
     progress: Progress,
 ) -> Leads:
     """Return the leads onto all passes and off them: quarter circles, lifted where they would gouge."""
-    starts, ends = _PassEnds.of(passes, at_end=False), _PassEnds.of(passes, at_end=True)
-    radius_in, radius_out = (e.radii(parameters) for e in (starts, ends))
-    lead_in, lead_out = starts.arcs(radius_in)[:, ::-1], ends.arcs(radius_out)
+    starts, finishes = (_PassEnds.of(passes, at_end=at_end) for at_end in (False, True))
+    radius_in, radius_out = (e.radii(parameters) for e in (starts, finishes))
+    lead_in, lead_out = starts.arcs(radius_in)[:, ::-1], finishes.arcs(radius_out)
     upright = np.array([[is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
     # Drop the cutter at all points of leads and of the chords between them, and lift what would gouge: max(floor + allowance - z, 0).
     share = np.linspace(0.0, 1.0, BETWEEN)[:, None]
     between = lead_out[:-1, -1:] + share * (lead_in[1:, :1] - lead_out[:-1, -1:])
     links = (lead_in, lead_out, between)
     flat = np.concatenate([w.reshape(-1, 3) for w in links])
-    lift = np.zeros(len(flat))
+    lift, met = np.zeros(len(flat)), np.zeros(len(flat), dtype=bool)
     if upright.any():
         # Leaning tools are never lifted, and a skin costs much to make ready for dropping.
         floor = drive.skin.drop.drop(
@@ -81,22 +81,22 @@ def leads_of(
             progress,
         )
         lift = np.maximum(floor + drive.allowance - flat[:, 2], 0.0)
-    lifts = [
-        x.reshape(w.shape[:2])
-        for x, w in zip(
-            np.split(lift, np.cumsum([w[..., 0].size for w in links])[:-1]), links, strict=True
-        )
-    ]
+        met = _shank_meets(flat, drive, tool, progress)
+    ends = np.cumsum([w[..., 0].size for w in links])[:-1]
+    lifts, meets = (
+        [x.reshape(w.shape[:2]) for x, w in zip(np.split(of, ends), links, strict=True)]
+        for of in (lift, met)
+    )
     is_arc = list[Bools]()
-    for arcs, up, is_up, nearest, end in zip(
-        (lead_in, lead_out), lifts, upright, (-1, 0), (starts, ends), strict=False
+    for arcs, up, shank, is_up, nearest, end in zip(
+        (lead_in, lead_out), lifts, meets, upright, (-1, 0), (starts, finishes), strict=False
     ):
         arcs[:, :, 2] += np.where(is_up[:, None], up, 0.0)
         is_arc.append(~is_up | (up.max(axis=1) <= 0.0))
-        # Lifted unevenly an arc runs along something steep, which its chords would enter: the tool then comes and goes along its axis.
-        uneven = is_up & (
-            np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP
-        )
+        # Lifted unevenly an arc runs along something steep, which its chords would enter, or the shank on it would: the tool then comes and
+        # goes along its axis.
+        is_steep = np.abs(np.diff(up, axis=1)).max(axis=1, initial=0.0) + up[:, nearest] > LIFT_STEP
+        uneven = is_up & (is_steep | shank.any(axis=1))
         rise = np.arange(1, QUARTER + 1) * (parameters.lead_radius / QUARTER)
         arcs[uneven] = (
             end.tip[uneven][:, None]
@@ -116,10 +116,24 @@ def leads_of(
         has_links=np.asarray(
             has_links
             & (lifts[2].max(axis=1, initial=0.0) <= most)
+            & ~(meets[0][1:].any(axis=1) | meets[1][:-1].any(axis=1) | meets[2].any(axis=1))
             & upright[1, :-1]
             & upright[0, 1:]
         ),
     )
+
+
+def _shank_meets(tips: Floats, drive: SurfaceDrive, tool: Tool, progress: Progress) -> Bools:
+    """Return at which tips (k, 3) of an upright tool what is wider than its cutter stands on the part, or comes as near beside it as passes
+    don't."""
+    met, highest = np.zeros(len(tips), dtype=bool), float(drive.skin.points[:, 2].max())
+    for height, radius in tool.rings()[1:]:
+        low = np.flatnonzero(tips[:, 2] + height < highest)
+        if len(low):
+            disc = level_disc(radius + tolerance.HOLDER_CLEARANCE)
+            bottom = tips[low, 2] + height
+            met[low] |= drive.skin.drop.drop(tips[low, :2], disc, bottom, progress) > bottom
+    return met
 
 
 def _strides(radius: Floats) -> Ints:
