@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +19,8 @@ SQUARE = 2.0
 """mm: side of the squares that cuts are looked up by."""
 SPACING = 0.1
 """mm between places on a circle about a tool's axis."""
+CIRCLES = 256
+"""Circles that are kept: a tool with its holder has some dozens."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,8 +113,11 @@ class ColumnCutGrid:
                 yield int(square[some[0]]), some
 
 
+@lru_cache(maxsize=CIRCLES)
 def circle(radius: float) -> Floats:
-    """Return places (k, 2) no farther apart than `SPACING` on a circle of a radius (mm) about the origin."""
+    """Return places (k, 2) no farther apart than `SPACING` on a circle of a radius (mm) about the origin; kept by radius."""
     count = math.ceil(2.0 * math.pi * radius / SPACING)
     angle = 2.0 * math.pi * np.arange(count) / count
-    return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    found = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    found.setflags(write=False)
+    return found

@@ -105,6 +105,9 @@ class BodyStock:
     def _comes_over(self, tips: Floats, z: float, radius: float) -> Bools:
         """Return at which tips (k, 3) something higher than a rim, z over the tip, stands on it."""
         found, upper = np.zeros(len(tips), dtype=bool), self._upper
+        # Shank and holder are mostly above all that stands.
+        if not len(tips) or tips[:, 2].min() + z >= self._tops[1]:
+            return found
         wide = radius + heightfield.HALF_DIAGONAL * upper.cell
         rows = np.flatnonzero(_met(upper, self._tops[1], tips, np.array([[z, wide, z, wide]])))
         places = circle(radius)
