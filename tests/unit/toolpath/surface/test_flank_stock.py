@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 from funnels import funnel
 from surface_drives import DATA, driven, grid
 from trunnion.geometry.arrays import Bools, Floats, Ints
-from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
+from trunnion.geometry.frame import WORLD
+from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.model.tool import Tool
 from trunnion.toolpath.contact_passes.flank.flank_stock import FlankStock
 from trunnion.toolpath.contact_passes.linking.link_passes import linked_in_order
@@ -116,9 +117,7 @@ class Points:
 
 def flutes(tool: Tool) -> Floats:
     """Return the cutting part of a tool as cones."""
-    path_of_none = LeaningCut.__new__(LeaningCut)
-    object.__setattr__(path_of_none, "tool", tool)
-    return path_of_none.flutes(0.0)
+    return LeaningCut(path=EMPTY, tool=tool, frame=WORLD).flutes(0.0)
 
 
 def above(tool: Tool, deeper: float) -> Floats:

@@ -43,6 +43,8 @@ class FlankStock:
     def is_free(self, tips: Floats, axes: Floats, cut: Ints) -> Bools:
         """Return at which tips (k, 3) with axes (k, 3) nothing above the flutes meets stock when so many passes (k,) are cut."""
         found = np.ones(len(tips), dtype=bool)
+        if not len(self._body):
+            return found
         for k, (tip, axis) in enumerate(zip(tips, axes, strict=True)):
             points = tip + self._body @ _frame(axis)
             points = points[self.stock.heights_at(points[:, :2]) > points[:, 2]]
@@ -86,7 +88,7 @@ class FlankStock:
         """Points (p, 3) on and in all that is above the flutes, the tip at the origin, its axis z."""
         turn = 2.0 * math.pi * np.arange(ROUND) / ROUND
         ring = np.column_stack([np.cos(turn), np.sin(turn)])
-        found = list[Floats]()
+        found = [np.zeros((0, 3))]
         for z0, r0, z1, r1 in self.tool.profile():
             count = max(1, math.ceil((z1 - z0) / max(APART, 0.25 * max(r0, r1))))
             for share in np.linspace(0.0, 1.0, count + 1).tolist():
