@@ -28,11 +28,9 @@ class NoSettings:
     """A strategy of a test takes none."""
 
 
-def planned(stock, setup, axis, deep):
-    """Return a path that goes into the stock and across; which process made it and what it knew of the stock are findings."""
-    middle = stock.corner + 0.5 * stock.cell * np.array(stock.heights.shape)
-    low = [*middle, stock.heights.max() - deep]
-    tips = np.array([[*middle, setup.clearance], low, np.add(low, [10.0, 0.0, 0.0])])
+def across(start, way, setup, axis, known):
+    """Return a path from above into a start and along a way; which process made it and what it knew of the stock are findings."""
+    tips = np.array([[*start[:2], setup.clearance], start, np.add(start, way)])
     return Planned(
         path=Toolpath(
             position=tips,
@@ -42,11 +40,15 @@ def planned(stock, setup, axis, deep):
             mark=np.array([Mark.RETRACT, Mark.ENTRY, Mark.CUT]),
             centre=np.full((3, 3), np.nan),
         ),
-        findings=(
-            info("test.process", str(os.getpid())),
-            info("test.stock", f"{stock.heights.sum():.6f}"),
-        ),
+        findings=(info("test.process", str(os.getpid())), info("test.stock", f"{known:.6f}")),
     )
+
+
+def planned(stock, setup, axis, deep):
+    """Return a path that goes into the middle of the stock and across, and looks at all of it."""
+    middle = stock.corner + 0.5 * stock.cell * np.array(stock.heights.shape)
+    low = [*middle, stock.heights.max() - deep]
+    return across(low, [10.0, 0.0, 0.0], setup, axis, stock.heights.sum())
 
 
 @strategy(settings=NoSettings, tool_axis=leaning_axis)
@@ -82,20 +84,9 @@ def fail(drive, tool, data, stock, setup, settings, progress):
 def slot(stock, setup, share):
     """Return an upright path across the stock at a share of its width, a little lower than all that stands within 5 mm of it."""
     x, y = stock.corner + stock.cell * np.array(stock.field.shape) * (share, 0.5)
-    start, end = np.array([x, y]), np.array([x, y + 10.0])
-    deep = stock.height(start, end, 5.0) - 0.5
-    tips = np.array([[*start, setup.clearance], [*start, deep], [*end, deep]])
-    return Planned(
-        path=Toolpath(
-            position=tips,
-            axis=np.tile(UPRIGHT, (3, 1)),
-            motion=np.array([Motion.RAPID, Motion.LINE, Motion.LINE]),
-            feed=np.array([0.0, 100.0, 100.0]),
-            mark=np.array([Mark.RETRACT, Mark.ENTRY, Mark.CUT]),
-            centre=np.full((3, 3), np.nan),
-        ),
-        findings=(info("test.process", str(os.getpid())), info("test.stock", f"{deep:.6f}")),
-    )
+    start = np.array([x, y])
+    deep = stock.height(start, start + [0.0, 10.0], 5.0) - 0.5
+    return across([x, y, deep], [0.0, 10.0, 0.0], setup, UPRIGHT, deep)
 
 
 @strategy(settings=NoSettings)
