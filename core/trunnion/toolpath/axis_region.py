@@ -54,6 +54,21 @@ class AxisRegion:
         return self.holds(a + np.linspace(0.0, 1.0, count)[:, None] * (b - a))
 
 
+class AxisRegions:
+    """Axis regions that are asked for again and again, made once each."""
+
+    def __init__(self) -> None:
+        self._made: dict[tuple[int, float, bool], tuple[Region, AxisRegion]] = {}
+
+    def of(self, boundary: Region, distance: float, *, mitred: bool = False) -> AxisRegion:
+        """Return the axis region of a boundary, as `AxisRegion.of` makes it."""
+        key = (id(boundary), distance, mitred)
+        if key not in self._made:
+            # The boundary is kept as well: another one can't get its number then.
+            self._made[key] = boundary, AxisRegion.of(boundary, distance, mitred=mitred)
+        return self._made[key][1]
+
+
 def is_closed(level: DriveLevel) -> bool:
     """Return whether a band's walls close it all round: its boundary does not run on past what is wanted."""
     return not level.boundary.minus(level.wanted.offset(OPEN_MARGIN))

@@ -15,6 +15,7 @@ from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, WallGuide
 from trunnion.progress import NO_PROGRESS
+from trunnion.toolpath.axis_region import AxisRegions
 from trunnion.toolpath.plane.corner import CornerSettings, corner
 from trunnion.toolpath.plane.floor import FloorSettings, floor
 from trunnion.toolpath.plane.rough import RoughSettings, rough
@@ -305,3 +306,13 @@ def test_a_sharp_foot_is_cut_without_touching_the_rounder_ones_beside_it() -> No
     assert len(deep)
     assert pocket.distance(deep[:, :2]).min() >= cutter.radius + fillet - 1e-6
     assert around.distance(deep[:, :2]).min() == pytest.approx(cutter.radius, abs=1e-3)
+
+
+def test_axis_regions_of_areas_that_are_made_and_gone_are_not_mixed_up() -> None:
+    """At each height a wall's pass has an area of its own, made for it alone, and often the same distance."""
+    known = AxisRegions()
+    for k in range(100):
+        found = known.of(Region.rectangle(0.0, 0.0, 10.0 + k, 10.0), 1.0)
+        assert found.region.area == pytest.approx(8.0 * (8.0 + k))
+    boundary = Region.rectangle(0.0, 0.0, 10.0, 10.0)
+    assert known.of(boundary, 1.0) is known.of(boundary, 1.0) is not known.of(boundary, 2.0)

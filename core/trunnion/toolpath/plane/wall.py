@@ -17,7 +17,7 @@ from trunnion.model.tool import Tool
 from trunnion.plan.prismatic.drive import Floor, PlaneDrive, WallGuide, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.axis_region import AxisRegion, is_closed, level_at
+from trunnion.toolpath.axis_region import AxisRegion, AxisRegions, is_closed, level_at
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
@@ -86,7 +86,7 @@ def wall(
         rounds=2 if settings.spring else 1,
     )
     findings: list[Finding] = []
-    axis_regions: dict[tuple[int, float, bool], AxisRegion] = {}
+    axis_regions = AxisRegions()
     for n, guide in enumerate(drive.walls):
         found = False
         step = min(data.depth, tool.flank_step(guide.top - guide.bottom))
@@ -94,8 +94,8 @@ def wall(
             progress.at(n / len(drive.walls), f"{drive.feature}: wall at {z:.3f}")
             boundary = _off_other_feet(level_at(drive, z).boundary, drive, guide, tool, z)
             distance = tool.radius + drive.wall_allowance + extra
-            axis_region = _axis_region(
-                axis_regions, boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
+            axis_region = axis_regions.of(
+                boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
             )
             parts = contour_parts(axis_region, guide.curve, distance)
             cut_parts(builder, parts, z, axis_region, approach)
@@ -217,25 +217,12 @@ def _heights(
     ]
 
 
-def _axis_region(
-    axis_regions: dict[tuple[int, float, bool], AxisRegion],
-    boundary: Region,
-    distance: float,
-    *,
-    mitred: bool = False,
-) -> AxisRegion:
-    key = (id(boundary), distance, mitred)
-    if key not in axis_regions:
-        axis_regions[key] = AxisRegion.of(boundary, distance, mitred=mitred)
-    return axis_regions[key]
-
-
 def _remaining_findings(
     drive: PlaneDrive,
     guide: WallGuide,
     tool: Tool,
     found: bool,
-    axis_regions: dict[tuple[int, float, bool], AxisRegion],
+    axis_regions: AxisRegions,
 ) -> list[Finding]:
     height = guide.top - guide.bottom
     if not found:
@@ -262,7 +249,7 @@ def _remaining_findings(
         )
     distance = tool.radius + drive.wall_allowance
     missed = length_out_of_reach(
-        _axis_region(axis_regions, level_at(drive, guide.bottom).boundary, distance),
+        axis_regions.of(level_at(drive, guide.bottom).boundary, distance),
         guide.curve,
         distance,
     )
