@@ -68,6 +68,7 @@ class PathJob:
             leans=strategy.tool_axis(settings) is ToolAxis.LEANING,
             finds_rest=strategy.finds_rest,
             past=strategy.goes_past(settings),
+            earlier_cuts=strategy.earlier_cuts,
         )
         driven = planner.drive(operation, needs, scene, progress)
         rolling, sides = driven.rolling, scene.sides
@@ -186,7 +187,8 @@ class PathJob:
                 turned(made.path, own, setup.frame),
                 cutter,
                 progress,
-                remember=self.driven.allowance > 0.0,
+                feature=self.operation.feature,
+                allowance=self.driven.allowance,
             )
         scene.leave(cutter, made)
         return changed

@@ -101,6 +101,7 @@ class PathJobs:
         self._changes, self._experience = 0, _Experience()
         scene.before_laid = self.take_over
         scene.before_leaning = self._take_over_allowances
+        scene.before_cuts = self._take_over_for
 
     def __enter__(self) -> PathJobs:
         return self
@@ -180,6 +181,10 @@ class PathJobs:
         """Wait for all paths that are begun where one of them leaves an allowance, and take them over."""
         if any(b.prepared is not None and b.prepared.driven.allowance > 0.0 for b in self._begun):
             self.take_over()
+
+    def _take_over_for(self, feature: str) -> None:
+        """Take over the paths that are begun as long as one of them is for a feature."""
+        self._take_while(lambda: any(b.operation.feature == feature for b in self._begun))
 
     def _leans(self, operation: Operation) -> bool:
         """Return whether the tool of an operation leans from its setup's or its cutting frame's z."""
@@ -281,12 +286,13 @@ def _made_ahead(scene: SetupScene, job: PathJob, progress: Progress) -> CopyResu
         raise _MustWait
 
     # The paths that others make are nobody's there.
-    kept = scene.before_laid, scene.before_leaning
+    kept = scene.before_laid, scene.before_leaning, scene.before_cuts
     scene.before_laid = scene.before_leaning = wait
+    scene.before_cuts = lambda feature: wait()
     try:
         return job.ahead(progress)
     finally:
-        scene.before_laid, scene.before_leaning = kept
+        scene.before_laid, scene.before_leaning, scene.before_cuts = kept
 
 
 def _made(begun: _Begun) -> _Begun:

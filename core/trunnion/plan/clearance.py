@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.frame import Frame
 from trunnion.model.tool import Tool
 from trunnion.progress import Progress
 
@@ -35,6 +36,20 @@ class ClearanceScene(Protocol):
 
     def holds(self, axis: Floats) -> Bools:
         """Return which tool axes (k, 3), in the cutting frame, the machine can hold."""
+
+
+class LeaningCutQuery(Protocol):
+    """What a leaning tool has cut (`toolpath.stock.leaning_cuts.LeaningCut`)."""
+
+    @property
+    def digest(self) -> str:
+        """A short stable digest of what is cut."""
+
+    def poses_in(self, frame: Frame, step: float = ...) -> tuple[Floats, Floats]:
+        """Return tips and axes (k, 3) along the moves in a frame, between which no place of the flutes goes farther than a step (mm)."""
+
+    def flutes(self, inside: float) -> Floats:
+        """Return the cutting part of the tool as cones (r, 4) from the tip up, with at least `inside` (mm) of it all round them."""
 
 
 class RemainingStockQuery(Protocol):

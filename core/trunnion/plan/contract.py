@@ -26,7 +26,7 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
-from trunnion.plan.clearance import ClearanceScene, RemainingStockQuery
+from trunnion.plan.clearance import ClearanceScene, LeaningCutQuery, RemainingStockQuery
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.fixtures import PlanFixture, off_fixtures
 from trunnion.plan.prismatic.keep_out import off_boxes
@@ -102,12 +102,13 @@ class ToolAxis(Enum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveNeeds:
     """What an operation's strategy needs: the class of its drive, whether its tool leans, whether it finds for itself what an earlier
-    cutter left, and how far in mm its tips go past where they touch the faces."""
+    cutter left, how far in mm its tips go past where they touch the faces, and whether it asks where leaning tools have cut before."""
 
     drive: type
     leans: bool = False
     finds_rest: bool = False
     past: float = math.inf
+    earlier_cuts: bool = False
 
 
 class Scene(Protocol):
@@ -132,6 +133,9 @@ class Scene(Protocol):
     ) -> RemainingStockQuery:
         """Return what stands at this moment off the part by all directions together, in a frame; with `leaning` without what leaning tools
         have cut that left an allowance."""
+
+    def leaning_cuts(self, feature: str) -> tuple[LeaningCutQuery, ...]:
+        """Return what leaning tools have cut for a feature before, in their order."""
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""

@@ -258,6 +258,40 @@ def test_its_path_is_stale_when_what_they_cut_is_another(made, cuts_known):
 
 
 @pytest.fixture
+def asked(routed, monkeypatch):
+    """Has those that `finish` ask what leaning tools have cut for their feature: returns how much they were told of, by operation."""
+    planner = type(planner_for(routed[1].recognition.family))
+    drive, count = planner.drive, {}
+
+    def asking(self, operation, needs, scene, progress):
+        driven = drive(self, operation, needs, scene, progress)
+        if operation.strategy != "finish":
+            return driven
+        cuts = tuple(c.digest for c in scene.leaning_cuts(operation.feature))
+        count[operation.id] = len(cuts)
+        return replace(driven, identity=(driven.identity, cuts))
+
+    @strategy(settings=NoSettings, tool_axis=leaning_axis)
+    def finish(drive, tool, data, stock, setup, settings, progress):
+        return planned(stock, setup, LEANT, 1.5)
+
+    monkeypatch.setitem(OWN, "finish", finish)
+    monkeypatch.setattr(planner, "drive", asking, raising=True)
+    return count
+
+
+@can_copy
+def test_what_leaning_tools_have_cut_for_its_feature_is_waited_for(made, asked) -> None:
+    names = ["lean", "lean", "finish", "lean", "finish", "lean", "finish"]
+    features = ["a", "b", "a", "b", "a", "b", "b"]
+    beside = made(names, features=features)
+    assert asked == {"own-2": 1, "own-4": 2, "own-6": 3}
+    turn = made(names, beside=0, features=features)
+    assert [p.key for p in beside] == [p.key for p in turn]
+    assert len({told(p, "test.process") for p in beside[:2]}) == 2
+
+
+@pytest.fixture
 def all_ahead(monkeypatch):
     """Has every path be worth a copy, as long as any are kept."""
     monkeypatch.setattr(path_jobs, "LEAST_S", 0.0)

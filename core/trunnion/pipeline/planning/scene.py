@@ -25,6 +25,7 @@ from trunnion.progress import Progress
 from trunnion.settings import digest
 from trunnion.toolpath.motion.reorient import Pose
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.leaning_cuts import LeaningCut
 from trunnion.toolpath.stock.remaining import RemainingStock
 from trunnion.toolpath.stock.views import StockViews
 
@@ -92,7 +93,9 @@ class SetupScene:
     before_laid: Callable[[], None] | None = None
     """Called before anybody looks at `laid`: some paths may still be made."""
     before_leaning: Callable[[], None] | None = None
-    """Called before anybody asks what leaning tools have cut."""
+    """Called before anybody asks what leaning tools have cut that left an allowance."""
+    before_cuts: Callable[[str], None] | None = None
+    """Called with a feature before anybody asks what leaning tools have cut for it."""
     _laid: list[tuple[Tool, OperationPath]] = field(default_factory=list)
     _made: dict[Hashable, Any] = field(default_factory=dict)
 
@@ -128,6 +131,12 @@ class SetupScene:
             return self.context.skin(tolerance.SKIN_CHORD, progress)
 
         return self.sides.remaining_stock(frame, skin, leaning=leaning, progress=progress)
+
+    def leaning_cuts(self, feature: str) -> tuple[LeaningCut, ...]:
+        """Return what leaning tools have cut for a feature before, in their order."""
+        if self.before_cuts is not None:
+            self.before_cuts(feature)
+        return self.sides.leaning_cuts(feature)
 
     def once(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return what is made once for all operations of the setup, kept under a key."""

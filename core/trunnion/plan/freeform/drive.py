@@ -16,7 +16,7 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.tool import Tool
-from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
+from trunnion.plan.clearance import ClearanceQuery, LeaningCutQuery, RemainingStockQuery
 
 
 class ExactFace(Protocol):
@@ -71,8 +71,9 @@ class SurfaceDrive:
     blank. `frame`: the cutting frame in the part's coordinates. `allowance`: mm left on the faces on purpose; `height`: the scallop height
     in mm that is wanted. `clearance`: the height in the cutting frame above everything. `digest` identifies all of this. `query_for`
     returns a tool's clearance query: which poses are clear of part and fixtures and within the machine's rotary limits
-    (`pipeline.planning.clearance`); None where no tool may lean. `remaining_stock` is the material that stands, None where nobody knows.
-    `findings` say what fixtures keep the cutter from. Passes run on past free rims by the `extension` in mm.
+    (`pipeline.planning.clearance`); None where no tool may lean. `remaining_stock` is the material that stands, None where nobody knows;
+    `leaning_cuts` what leaning tools have cut for the feature before, where a strategy asks for it. `findings` say what fixtures keep the
+    cutter from. Passes run on past free rims by the `extension` in mm.
     """
 
     feature: str
@@ -90,6 +91,7 @@ class SurfaceDrive:
     earlier: Tool | None = None
     query_for: Callable[[Tool], ClearanceQuery] | None = None
     remaining_stock: RemainingStockQuery | None = None
+    leaning_cuts: tuple[LeaningCutQuery, ...] = ()
     findings: tuple[Finding, ...] = ()
     extension: float = 0.0
 

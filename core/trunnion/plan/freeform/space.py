@@ -21,7 +21,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.part.part import Part
 from trunnion.part.shape.exact import ExactFace
-from trunnion.plan.clearance import ClearanceQuery, RemainingStockQuery
+from trunnion.plan.clearance import ClearanceQuery, LeaningCutQuery, RemainingStockQuery
 from trunnion.plan.contract import DriveNeeds
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.finishing.partition import parted_within
@@ -139,11 +139,13 @@ class SurfaceSpace:
         upright: Tool | None = None,
         progress: Progress = NO_PROGRESS,
         within: Region | None = None,
+        leaning_cuts: tuple[LeaningCutQuery, ...] = (),
     ) -> SurfaceDrive:
         """Return what an operation on curved faces is driven by.
 
         `earlier` is the cutter that finished them before, `query_for` returns the clearance query of a tool, `remaining_stock` is the
-        material that stands, `upright` the cutter that finished what an upright one comes to.
+        material that stands, `leaning_cuts` what leaning tools have cut for the feature, `upright` the cutter that finished what an upright
+        one comes to.
 
         With a plan area only what is `within` it is finished of faces that run out of it.
 
@@ -198,6 +200,7 @@ class SurfaceSpace:
             earlier=earlier,
             query_for=query_for,
             remaining_stock=remaining_stock,
+            leaning_cuts=leaning_cuts,
             findings=tuple(
                 self._finding(operation, area, notice)
                 for notice, area in notices

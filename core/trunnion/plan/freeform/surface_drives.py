@@ -7,6 +7,7 @@ from trunnion.findings import Finding
 from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import Operation
 from trunnion.model.tool import Tool, rotating
+from trunnion.plan.clearance import LeaningCutQuery
 from trunnion.plan.contract import Drive, DriveNeeds, LazyDrive, OperationDrive, Scene
 from trunnion.plan.freeform.keys import ALLOWANCE, EARLIER, UPRIGHT_EARLIER, number
 from trunnion.plan.freeform.space import SurfaceSpace
@@ -49,11 +50,14 @@ def surface_driven(
         # What leaves an allowance waits for nothing: paths of leaning tools are made beside each other.
         remaining_stock = scene.remaining_stock(space.frame, progress, leaning=allowance <= 0.0)
         cut = remaining_stock.cut
+    cuts: tuple[LeaningCutQuery, ...] = ()
+    if needs.earlier_cuts and allowance <= 0.0:
+        cuts = scene.leaning_cuts(operation.feature)
 
     def made() -> tuple[Drive, tuple[Finding, ...]]:
         drive = progress.aside(
             lambda own: space.drive_of(
-                operation, needs, earlier, around, remaining_stock, upright, own, within
+                operation, needs, earlier, around, remaining_stock, upright, own, within, cuts
             )
         )
         return drive, drive.findings
@@ -62,7 +66,12 @@ def surface_driven(
     return OperationDrive(
         setup=space.setup,
         lazy=LazyDrive(made),
-        identity=(identity, scene.fixtures, *((cut,) if cut else ())),
+        identity=(
+            identity,
+            scene.fixtures,
+            *((cut,) if cut else ()),
+            *((tuple(c.digest for c in cuts),) if cuts else ()),
+        ),
         allowance=allowance,
     )
 

@@ -23,20 +23,26 @@ class ToolMoves:
 
     def poses(self, pieces: Floats) -> tuple[Ints, Floats, Floats]:
         """Return the poses that part each way in so many equal pieces (k,), its ends among them: its number (p,), tips and axes (p, 3)."""
+        way, share = self.shares(pieces)
+        return way, *self.at(way, share)
+
+    def shares(self, pieces: Floats) -> tuple[Ints, Floats]:
+        """Return where `poses` are: the number (p,) of the way of each, and its share (p,) of that."""
         count = np.maximum(pieces, 1.0).astype(np.int64)
         way, number = _numbered(count + 1)
-        return self._at(way, number / count[way])
+        return way, number / count[way]
 
     def middles(self, pieces: Floats) -> tuple[Ints, Floats, Floats]:
         """Return the poses in the middles of so many equal pieces (k,) of each way: its number (p,), tips and axes (p, 3)."""
         count = np.maximum(pieces, 1.0).astype(np.int64)
         way, number = _numbered(count)
-        return self._at(way, (number + 0.5) / count[way])
+        return way, *self.at(way, (number + 0.5) / count[way])
 
-    def _at(self, way: Ints, share: Floats) -> tuple[Ints, Floats, Floats]:
+    def at(self, way: Ints, share: Floats) -> tuple[Floats, Floats]:
+        """Return tips and axes (p, 3) at shares (p,) of ways by their numbers (p,)."""
         start_tip, start_axis, tip, axis = (v[way] for v in self._ends)
         tips = start_tip + share[:, None] * (tip - start_tip)
-        return way, tips, slerp(start_axis, axis, share)
+        return tips, slerp(start_axis, axis, share)
 
 
 def _numbered(count: Ints) -> tuple[Ints, Ints]:

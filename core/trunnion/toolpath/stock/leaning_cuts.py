@@ -25,25 +25,27 @@ ROUND = ("ball", "bull", "flat")
 
 @dataclass(frozen=True)
 class LeaningCut:
-    """The path of a leaning tool in a frame: what its feed moves cut."""
+    """The path of a leaning tool in a frame, for a feature, what its feed moves cut; `allowance`: mm that it leaves for later ones, 0 where
+    it leaves nothing."""
 
     path: Toolpath
     tool: Tool
     frame: Frame
+    feature: str = ""
+    allowance: float = 0.0
 
     @cached_property
     def digest(self) -> str:
         """A short stable digest of what is cut."""
         return digest(self.path.position, self.path.axis, self.path.motion, self.tool, self.frame)
 
-    @cached_property
-    def poses(self) -> tuple[Floats, Floats]:
-        """Tips and axes (k, 3) along the moves, in the part's coordinates."""
+    def poses_in(self, frame: Frame, step: float = STEP) -> tuple[Floats, Floats]:
+        """Return tips and axes (k, 3) along the moves in a frame, between which no place of the flutes goes farther than a step (mm)."""
         path = self.path
         start, turned_from = path.starts(), np.vstack([path.axis[:1], path.axis[:-1]])
         turn = angle_between(turned_from, path.axis)
         moved = np.linalg.norm(path.position - start, axis=1) + self.tool.flute_length * turn
-        count = np.maximum(np.ceil(moved / STEP), 1.0).astype(np.int64)
+        count = np.maximum(np.ceil(moved / step), 1.0).astype(np.int64)
         count[path.motion == Motion.RAPID] = 0
         rows = np.repeat(np.arange(len(path)), count)
         share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count) + 1) / count[
@@ -51,20 +53,24 @@ class LeaningCut:
         ]
         axis = turned_from[rows] + share[:, None] * (path.axis[rows] - turned_from[rows])
         axis /= np.linalg.norm(axis, axis=1, keepdims=True)
-        tip = positions_on(path, rows, share)
-        return self.frame.to_world(tip), self.frame.world_direction(axis)
+        tip = self.frame.to_world(positions_on(path, rows, share))
+        return frame.to_local(tip), frame.local_direction(self.frame.world_direction(axis))
 
     def flutes(self, inside: float) -> Floats:
-        """Return the cutting part of the tool as cones (r, 4) from the tip up, with at least `inside` (mm) of it all round them; nothing
-        where it is too small or not known."""
-        tool = self.tool
-        corner, wide = max(tool.corner_radius - inside, 0.0), tool.radius - inside
-        if tool.form not in ROUND or wide <= 0.0:
-            return np.zeros((0, 4))
-        lean = np.linspace(0.0, 0.5 * np.pi, RINGS + 1)
-        height = inside + corner * (1.0 - np.cos(lean))
-        reach = wide - corner * (1.0 - np.sin(lean))
-        top = tool.flute_length - inside
-        height, reach = np.append(height, top), np.append(reach, wide)
-        rows = np.column_stack([height[:-1], reach[:-1], height[1:], reach[1:]])
-        return np.ascontiguousarray(rows[rows[:, 2] > rows[:, 0]])
+        """Return the cutting part of the tool as cones (r, 4), as `flutes_of` has them."""
+        return flutes_of(self.tool, inside)
+
+
+def flutes_of(tool: Tool, inside: float) -> Floats:
+    """Return the cutting part of a tool as cones (r, 4) from the tip up, with at least `inside` (mm) of it all round them; nothing where it
+    is too small or not known."""
+    corner, wide = max(tool.corner_radius - inside, 0.0), tool.radius - inside
+    if tool.form not in ROUND or wide <= 0.0:
+        return np.zeros((0, 4))
+    lean = np.linspace(0.0, 0.5 * np.pi, RINGS + 1)
+    height = inside + corner * (1.0 - np.cos(lean))
+    reach = wide - corner * (1.0 - np.sin(lean))
+    top = tool.flute_length - inside
+    height, reach = np.append(height, top), np.append(reach, wide)
+    rows = np.column_stack([height[:-1], reach[:-1], height[1:], reach[1:]])
+    return np.ascontiguousarray(rows[rows[:, 2] > rows[:, 0]])

@@ -115,15 +115,20 @@ class StockViews:
         progress: Progress = NO_PROGRESS,
     ) -> RemainingStock:
         """Return what stands of the blank by all directions together, off the part, whose skin in its own coordinates `part`
-        makes, in a frame; with `leaning` without what leaning tools have cut that was remembered."""
+        makes, in a frame; with `leaning` without what leaning tools have cut that left an allowance."""
         if self._voxels is None:
             self._voxels = StockVoxels.of(self._blank, part(), NEAR, progress)
         for name, stock in self._stocks.items():
             self._voxels.lower(name, stock, self._frames[name])
         if leaning:
-            for cut in self._leaning[self._voxels.cuts :]:
+            cuts = [c for c in self._leaning if c.allowance > 0.0]
+            for cut in cuts[self._voxels.cuts :]:
                 self._voxels.cut(cut, progress)
         return self._voxels.remaining(frame, leaning=leaning)
+
+    def leaning_cuts(self, feature: str) -> tuple[LeaningCut, ...]:
+        """Return what leaning tools have cut for a feature, in their order."""
+        return tuple(c for c in self._leaning if c.feature == feature)
 
     def cut(
         self,
@@ -132,16 +137,16 @@ class StockViews:
         tool: Tool,
         progress: Progress = NO_PROGRESS,
         *,
-        remember: bool = False,
+        feature: str = "",
+        allowance: float = 0.0,
     ) -> bool:
         """Take a path in the frame of a setup off its stock; return whether anything was. A leaning tool takes nothing off: the stock is
-        then higher than it is. With `remember` what it cuts is kept for `remaining_stock`."""
+        then higher than it is. What it cuts for a feature, leaving an allowance (mm) or 0, is kept for those that ask."""
         if not len(path):
             return False
         upright = path.axis[path.motion != Motion.RAPID, 2] > 1.0 - tolerance.PARAMETRIC
         if not upright.all():
-            if remember:
-                self._leaning.append(LeaningCut(path, tool, setup.frame))
+            self._leaning.append(LeaningCut(path, tool, setup.frame, feature, allowance))
             return False
         name = digest(setup.frame)
         self._stocks[name] = self._stocks[name].after(path, tool, progress)

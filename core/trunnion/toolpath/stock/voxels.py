@@ -102,11 +102,10 @@ class StockVoxels:
         """Take off what a leaning tool has cut, the next one of all."""
         self._cuts.append(cut.digest)
         rows = cut.flutes(self.reach)
-        tips, axes = cut.poses
+        tips, axes = cut.poses_in(self.frame)
         if not len(rows) or not len(tips):
             return
-        tips = np.ascontiguousarray(self.frame.to_local(tips))
-        axes = np.ascontiguousarray(self.frame.local_direction(axes))
+        tips, axes = np.ascontiguousarray(tips), np.ascontiguousarray(axes)
 
         def work(first: int, last: int) -> None:
             # Threads may clear the same voxel: what comes of it is the same.

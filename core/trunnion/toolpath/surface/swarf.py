@@ -7,6 +7,7 @@ a floor, as under a wall that leans over, it is lifted along the ruling.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,9 +27,10 @@ from trunnion.plan.freeform.swarf.level_sections import level_sections
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.flank.flank_passes import flank_passes, lifts, stretches
-from trunnion.toolpath.contact_passes.flank.flank_stock import FlankStock
+from trunnion.toolpath.contact_passes.flank.flank_trimming import passes_off_stock
 from trunnion.toolpath.contact_passes.linking.link_passes import extended_in_order, linked_in_order
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
+from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.stock_clearance import (
     LEAST_STOCK,
     STOCK_SHARE,
@@ -95,6 +97,7 @@ class SwarfSettings:
     drive=SurfaceDrive,
     tool_axis=leaning_axis,
     meets=contour_leftovers,
+    earlier_cuts=True,
 )
 def swarf(
     drive: SurfaceDrive,
@@ -116,13 +119,9 @@ def swarf(
         lambda _: _lines(drive, tool, step, query, feet_alone=settings.feet), "Looking for rulings"
     )
     around = StockClearance(drive, tool, max(STOCK_SHARE * data.width, LEAST_STOCK))
-    # What stands is cut by the passes themselves, from the top down: necks go where flanks have been.
     found = flank_passes(
-        lines, tool, drive.allowance, query, settings.chord, progress.part(0.1, 0.6)
+        lines, tool, drive.allowance, query, settings.chord, progress.part(0.1, 0.5)
     )
-    findings = _remaining_findings(found.done, found.whole, drive, tool)
-    if not found.passes:
-        return Planned(findings=findings)
     parameters = LinkParameters(
         stepover=step,
         safety=settings.safety,
@@ -130,12 +129,25 @@ def swarf(
         query=query,
         link_clearance=around,
     )
-    passes = extended_in_order(found.passes, drive, tool, parameters, progress.part(0.6, 0.65))
-    parameters = replace(parameters, pass_stock=FlankStock(passes, tool, stock))
+    extended = extended_in_order(found.passes, drive, tool, parameters, progress.part(0.5, 0.55))
+    # What stands is cut by the passes themselves, from the top down: necks go where flanks have been.
+    passes, beside = passes_off_stock(
+        extended, tool, stock, drive.leaning_cuts, drive.frame, progress.part(0.55, 0.65)
+    )
+    share = _length(passes) / max(_length(extended), tolerance.COINCIDENT)
+    findings = _remaining_findings(share * found.done, found.whole, drive, tool)
+    if not passes:
+        return Planned(findings=findings)
+    parameters = replace(parameters, pass_stock=beside)
     path = linked_in_order(
         passes, drive, tool, data, stock, setup, parameters, progress.part(0.65, 1.0)
     )
     return Planned(path=path, findings=findings)
+
+
+def _length(passes: Sequence[Pass]) -> float:
+    """Return how long the paths of tips on passes are as a whole, mm."""
+    return sum(p.length for p in passes)
 
 
 def _height(skin: Skin, faces: tuple[int, ...]) -> float:

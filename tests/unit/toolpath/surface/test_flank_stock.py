@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,15 +14,18 @@ from funnels import funnel
 from surface_drives import DATA, driven, grid
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import WORLD
-from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
+from trunnion.geometry.kernels.flutes import bodies_free_reference
+from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.tool import Tool
-from trunnion.toolpath.contact_passes.flank.flank_stock import FlankStock
+from trunnion.toolpath.contact_passes.flank.flank_stock import FlankStock, moves_of, pieces
+from trunnion.toolpath.contact_passes.flank.flank_trimming import LOOK_STEP, passes_off_stock
 from trunnion.toolpath.contact_passes.linking.link_passes import linked_in_order
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.stock_clearance import StockClearance
 from trunnion.toolpath.contact_passes.tool_moves import ToolMoves
-from trunnion.toolpath.stock.leaning_cuts import LeaningCut
+from trunnion.toolpath.stock.flute_cuts import INSIDE, FluteCuts, frames_of
+from trunnion.toolpath.stock.leaning_cuts import LeaningCut, flutes_of
 from trunnion.toolpath.surface.swarf import SwarfSettings, swarf
 from verify_tools import bull
 
@@ -63,7 +67,7 @@ def test_a_neck_goes_where_the_pass_above_was(lean: float) -> None:
     _, _, stock = blocks()
     axis = leaning(lean)
     passes = [along(axis, 5.0), along(axis, 10.5)]
-    beside = FlankStock(passes, TOOL, stock)
+    beside = FlankStock.after(passes, TOOL, stock)
     tips = passes[1].tip[:1] + np.array([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [15.0, 0.0, 0.0]])
     axes = np.broadcast_to(axis, tips.shape)
     assert beside.is_free(tips, axes, np.ones(3, int)).all()
@@ -71,14 +75,14 @@ def test_a_neck_goes_where_the_pass_above_was(lean: float) -> None:
     # A lead of a millimetre past the end of both.
     on = tips[2:] + [1.0, 0.0, 0.0]
     assert not beside.is_free(on, axes[:1], np.ones(1, int)).any()
-    longer = FlankStock([along(axis, 5.0, end=21.0), passes[1]], TOOL, stock)
+    longer = FlankStock.after([along(axis, 5.0, end=21.0), passes[1]], TOOL, stock)
     assert longer.is_free(on, axes[:1], np.ones(1, int)).all()
 
 
 def test_no_deeper_than_the_flutes_nothing_is_in_a_neck_s_way() -> None:
     _, _, stock = blocks()
     one = along(leaning(0.0), 5.9)
-    assert FlankStock([one], TOOL, stock).is_free(one.tip, one.axis, np.zeros(2, int)).all()
+    assert FlankStock.after([one], TOOL, stock).is_free(one.tip, one.axis, np.zeros(2, int)).all()
 
 
 class Points:
@@ -117,7 +121,7 @@ class Points:
 
 def flutes(tool: Tool) -> Floats:
     """Return the cutting part of a tool as cones."""
-    return LeaningCut(path=EMPTY, tool=tool, frame=WORLD).flutes(0.0)
+    return flutes_of(tool, 0.0)
 
 
 def above(tool: Tool, deeper: float) -> Floats:
@@ -137,7 +141,7 @@ def test_what_is_free_holds_nothing_of_a_fine_grid_of_points(seed: int) -> None:
         tip = along(leaning(0.0), float(depth)).tip.mean(axis=0) + pick.uniform(-4.0, 4.0, at)
         axis = np.array([leaning(a) for a in pick.uniform(-12.0, 12.0, 3)])
         passes.append(Pass(tip=tip, axis=axis, normal=np.broadcast_to([0.0, 1.0, 0.0], at)))
-    beside = FlankStock(passes, TOOL, stock)
+    beside = FlankStock.after(passes, TOOL, stock)
     stand = Points(np.array([0.0, 3.0, 0.0]), np.array([25.0, 27.0, TOP]), 0.5)
     found = []
     for k, one in enumerate(passes):
@@ -187,7 +191,7 @@ def test_a_lead_that_the_one_above_had_no_space_for_is_left_out(lean: float) -> 
         linked_in_order(
             passes, drive, TOOL, DATA, stock, setup, replace(parameters, pass_stock=beside)
         )
-        for beside in (None, FlankStock(passes, TOOL, stock))
+        for beside in (None, FlankStock.after(passes, TOOL, stock))
     ]
     low, high = np.array([0.0, 3.0, 0.0]), np.array([30.0, 27.0, TOP])
     blind, seeing = (contacts(path, Points(low, high, 0.35)) for path in made)
@@ -207,3 +211,120 @@ def test_leads_in_the_corners_of_a_pocket_meet_no_stock(leans: tuple[float, ...]
     drive = replace(drive, query_for=lambda _: free)
     path = swarf(drive, TOOL, DATA, stock, setup, SwarfSettings()).path
     assert not contacts(path, Points(drive.low, np.append(drive.high[:2], height), 0.7))
+
+
+@pytest.mark.parametrize("lean", [-6.0, 0.0, 5.0])
+def test_a_pass_ends_where_those_above_do(lean: float) -> None:
+    _, _, stock = blocks()
+    axis = leaning(lean)
+    passes = [along(axis, 5.0, start=7.0, end=18.0), along(axis, 10.5)]
+    (first, second), _ = passes_off_stock(passes, TOOL, stock)
+    assert first is passes[0]
+    assert 7.0 - 0.3 <= second.tip[0, 0] <= 7.0 + LOOK_STEP and len(second) == 2
+    assert 18.0 - LOOK_STEP <= second.tip[-1, 0] <= 18.0 + 0.3
+    # A tool that came as deep before, farther along, leaves it its way.
+    wide = along(axis, 5.0, start=4.0, end=21.0)
+    before = LeaningCut(path=a_path(wide), tool=TOOL, frame=WORLD)
+    (first, second), _ = passes_off_stock(passes, TOOL, stock, [before])
+    assert (second.tip == passes[1].tip).all()
+
+
+def a_path(one: Pass) -> Toolpath:
+    """Return a pass as a path, reached at rapid."""
+    n = len(one)
+    return Toolpath(
+        position=one.tip,
+        axis=one.axis,
+        motion=np.array([Motion.RAPID, *[Motion.LINE] * (n - 1)]),
+        feed=np.array([0.0, *[100.0] * (n - 1)]),
+        mark=np.full(n, Mark.CUT),
+        centre=np.full((n, 3), np.nan),
+    )
+
+
+def test_a_closed_pass_begins_behind_what_is_left_out_of_it() -> None:
+    _, _, stock = blocks()
+    axis = leaning(0.0)
+    corners = np.array([[5.0, 8.0], [20.0, 8.0], [20.0, 22.0], [5.0, 22.0], [5.0, 8.0]])
+    at = (5, 3)
+    lower = Pass(
+        tip=np.column_stack([corners, np.full(5, TOP - 10.5)]),
+        axis=np.broadcast_to(axis, at),
+        normal=np.broadcast_to([0.0, 1.0, 0.0], at),
+        closed=True,
+    )
+    upper = Pass(tip=lower.tip + [0.0, 0.0, 5.5], axis=lower.axis, normal=lower.normal, closed=True)
+    whole, _ = passes_off_stock([upper, lower], TOOL, stock)
+    assert whole[1] is lower
+    # Nothing has cut above the second side.
+    found, _ = passes_off_stock([upper.of([1, 0]), upper.of([3, 2]), lower], TOOL, stock)
+    assert [p.closed for p in found[2:]] == [False, False]
+    assert all(np.ptp(p.tip[:, 1]) < 0.3 for p in found[2:])
+    sides = sorted(float(p.tip[:, 1].mean()) for p in found[2:])
+    assert sides == pytest.approx([8.0, 22.0], abs=0.3)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_pass_that_is_left_meets_points_of_a_fine_grid(seed: int) -> None:
+    pick = np.random.default_rng(seed)
+    _, _, stock = blocks()
+    passes = []
+    for depth in np.arange(4.0, 16.0, 2.5):
+        at = (4, 3)
+        tip = along(leaning(0.0), float(depth)).tip.mean(axis=0) + pick.uniform(-0.4, 0.4, at)
+        tip[:, 0] += np.linspace(-5.0, 5.0, 4)
+        axis = np.array([leaning(a) for a in pick.uniform(-4.0, 4.0, 4)])
+        passes.append(Pass(tip=tip, axis=axis, normal=np.broadcast_to([0.0, 1.0, 0.0], at)))
+    kept, _ = passes_off_stock(passes, TOOL, stock)
+    low, high = np.array([0.0, 3.0, 0.0]), np.array([25.0, 27.0, TOP])
+    blind, seeing = (met(some, Points(low, high, 0.4)) for some in (passes, kept))
+    assert blind and not seeing
+    assert sum(p.length for p in kept) > 0.3 * sum(p.length for p in passes)
+
+
+def met(passes: Sequence[Pass], stand: Points) -> int:
+    """Cut what stands along passes, and return at how many poses anything above the flutes meets it."""
+    found = 0
+    for one in passes:
+        _, tips, axes = moves_of(one).poses(pieces(moves_of(one), TOOL, 0.2))
+        for k in range(len(tips)):
+            stand.cut(flutes(TOOL), tips[k : k + 1], axes[k : k + 1])
+            # Between two poses that were asked about and between points of the body a little is met.
+            found += int(stand.met(above(TOOL, 0.15), tips[k : k + 1], axes[k : k + 1]).any())
+    return found
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_kernel_that_asks_where_flutes_have_been_and_the_plain_one_agree(seed: int) -> None:
+    pick = np.random.default_rng(seed)
+    cuts = FluteCuts.within(np.array([1.0, 0.0, -2.0]), np.array([13.0, 11.0, 9.0]), 1.7)
+    kinds = [flutes_of(bull(d, r)(flute=5.0), INSIDE) for d, r in ((4.0, 0.5), (6.0, 2.0))]
+    poses = []
+    for number in range(5):
+        tips, axes = pick.uniform(0.0, 12.0, (7, 3)), pick.normal(size=(7, 3))
+        axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+        cuts.add(tips, axes, kinds[number % 2], number)
+        poses.append((tips, axes, np.full(7, number), np.full(7, number)))
+    cut_tips, cut_axes, numbers, kind = (np.concatenate(v) for v in zip(*poses, strict=True))
+    _, _, stock = blocks(top=8.0)
+    stock = replace(stock, field=np.where(pick.random(stock.field.shape) < 0.5, 8.0, 0.0))
+    # In the box alone poses are listed.
+    tips = pick.uniform([2.0, 1.0, -1.0], [12.0, 10.0, 8.0], (900, 3))
+    axes, before = np.tile([0.0, 0.6, 0.8], (900, 1)), pick.integers(0, 6, 900)
+    body = np.array([[0.0, 0.0, 0.0], [0.2, 0.1, 0.5]])
+    found = cuts.is_free(body, stock, tips, axes, before)
+    plain = bodies_free_reference(
+        cut_tips,
+        cut_axes,
+        numbers,
+        kind % 2,
+        np.array(kinds),
+        stock.field,
+        stock.corner,
+        stock.cell,
+        tips,
+        frames_of(axes),
+        body,
+        before,
+    )
+    assert (found == plain).all() and 0.2 < found.mean() < 0.9

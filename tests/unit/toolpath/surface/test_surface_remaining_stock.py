@@ -295,7 +295,7 @@ def test_the_kernel_that_takes_off_what_is_above_a_field_and_the_plain_one_agree
 def test_what_a_leaning_tool_has_cut_stands_no_more_where_that_is_asked_for():
     views = StockViews(BLANK)
     views.seen(SETUP)
-    assert not views.cut(SETUP, leant(10.0), BALL, remember=True)
+    assert not views.cut(SETUP, leant(10.0), BALL, allowance=0.2)
     asked, unasked = (views.remaining_stock(WORLD, far_part, leaning=v) for v in (True, False))
     assert asked.cut and not unasked.cut
     assert asked.cut != StockViews(BLANK).remaining_stock(WORLD, far_part, leaning=True).cut
@@ -324,7 +324,7 @@ def test_a_shank_goes_where_an_earlier_leaning_tool_has_cut():
     views = StockViews(BLANK)
     views.seen(SETUP)
     wide = replace(BALL, diameter=12.0, corner_radius=6.0, flute_length=30.0, neck_length=31.0)
-    views.cut(SETUP, leant(12.0), wide, remember=True)
+    views.cut(SETUP, leant(12.0), wide, allowance=0.2)
     tip, axis = np.array([[20.0, 10.0, 3.0]]), LEANING[None]
     shank = ((5.0, 1.0, 20.0, 1.0),)
     for leaning in (True, False):

@@ -21,6 +21,7 @@ from trunnion.toolpath.contact_passes.flank.flank_passes import (
     poses_on,
     stretches,
 )
+from trunnion.toolpath.stock.leaning_cuts import LeaningCut
 from trunnion.toolpath.surface.swarf import SwarfSettings, swarf
 from verify_tools import bull, flat
 
@@ -163,7 +164,9 @@ def test_a_closed_line_with_a_gap_is_one_open_stretch() -> None:
 @pytest.mark.parametrize("height", [8.0, 20.0, 33.0, 61.0])
 @pytest.mark.parametrize("leans", [(5.0,) * 4, (6.0, -4.0, 0.0, 3.0)])
 def test_walls_are_cut_over_all_their_height(height: float, leans: tuple[float, ...]) -> None:
-    skin, tool = funnel(leans, height=height), bull(8.0, 1.0)(flute=15.0)
+    # Nothing is roughed: the neck goes where the flutes were on the passes above.
+    skin = funnel(leans, height=height)
+    tool = replace(bull(8.0, 1.0)(flute=15.0), neck_length=80.0, stickout=90.0, gauge_length=150.0)
     drive, setup, stock = driven(skin, faces=(1, 2, 3, 4), top=height)
     drive = replace(drive, query_for=lambda _: free)
     path = swarf(drive, tool, DATA, stock, setup, SwarfSettings()).path
@@ -184,3 +187,18 @@ def test_swarf_milling_needs_rotary_axes() -> None:
     drive, setup, stock = driven(grid(lambda x, y: 0.0 * x))
     with pytest.raises(Refused, match="rotary axes"):
         swarf(drive, flat(10.0)(), DATA, stock, setup, SwarfSettings())
+
+
+def test_feet_are_cut_where_an_earlier_cutter_has_made_way() -> None:
+    height = 20.0
+    skin = funnel((5.0,) * 4, height=height)
+    wide = replace(bull(8.0, 1.0)(flute=30.0), gauge_length=150.0, stickout=90.0, neck_length=80.0)
+    slim = replace(wide, flute_length=6.0)
+    drive, setup, stock = driven(skin, faces=(1, 2, 3, 4), top=height)
+    drive = replace(drive, query_for=lambda _: free)
+    above = swarf(drive, wide, DATA, stock, setup, SwarfSettings()).path
+    blind = swarf(drive, slim, DATA, stock, setup, SwarfSettings(feet=True))
+    assert not len(blind.path) and [f.code for f in blind.findings] == ["swarf.left"]
+    known = replace(drive, leaning_cuts=(LeaningCut(above, wide, drive.frame),))
+    seeing = swarf(known, slim, DATA, stock, setup, SwarfSettings(feet=True))
+    assert len(seeing.path) and not seeing.findings

@@ -1,130 +1,116 @@
 """Stock beside passes of a flank while they are cut in their order: all above its flutes goes where flutes have been, or over the stock.
 
-Flutes clear what a neck needs only as far as passes go: a lead runs on past the end of its pass, in a corner into what none above has cut.
-Points of neck, shank and holder are asked, each on its own; what other leaning tools have cut before counts as left.
+Flutes clear what a neck needs only as far as passes go: at the end of one, and on a lead that runs on past it, none above may have cut.
+Points of neck, shank and holder are asked, each on its own; what is told of earlier leaning tools counts as cut.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable, Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 
+from trunnion import tolerance
 from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.tool import Tool
+from trunnion.plan.clearance import LeaningCutQuery
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contact_passes.passes import Pass
 from trunnion.toolpath.contact_passes.tool_moves import ToolMoves
+from trunnion.toolpath.stock.flute_cuts import INSIDE, STEP, FluteCuts, ring
 from trunnion.toolpath.stock.heightfield import PlanningStock
+from trunnion.toolpath.stock.leaning_cuts import flutes_of
 
-STEP = 0.5
-"""mm that no place of the flutes goes between two poses that are looked at."""
-INSIDE = 0.05
-"""mm that a point is within the flutes by: between two points the body is nearer to the axis, and flutes between two poses clear less."""
-ROUND = 36
+ROUND = 48
 """Points round a body at one height."""
-CHUNK = 64
-"""Poses that points are held against before those that were in none of them are looked for in more."""
+SLIMMER = tolerance.GOUGE
+"""mm that bodies count as slimmer by: a shank as wide as the flutes goes where these have been, though it touches all round."""
 APART = 1.0
 """mm between two heights of points on a neck, and of those on wider bodies a quarter of their radius at least."""
+WITHIN = (1.0, 0.5)
+"""Shares of a body's radius that points are at."""
+EARLIER = -1
+"""The number of what was cut before all passes."""
 
 
-@dataclass(frozen=True, eq=False)
 class FlankStock:
-    """What stands beside passes of a tool that are cut in their order (`linking.parameters.PassStock`), in the stock before them."""
+    """What stands beside passes of a tool that are cut in their order (`linking.parameters.PassStock`), in the stock before them.
 
-    passes: Sequence[Pass]
-    tool: Tool
-    stock: PlanningStock
+    `earlier` are the cuts of other leaning tools, `frame` is the cutting frame, in which passes and stock are."""
 
-    def is_free(self, tips: Floats, axes: Floats, cut: Ints) -> Bools:
-        """Return at which tips (k, 3) with axes (k, 3) nothing above the flutes meets stock when so many passes (k,) are cut."""
-        found = np.ones(len(tips), dtype=bool)
-        if not len(self._body):
-            return found
-        for k, (tip, axis) in enumerate(zip(tips, axes, strict=True)):
-            points = tip + self._body @ _frame(axis)
-            points = points[self.stock.heights_at(points[:, :2]) > points[:, 2]]
-            found[k] = not len(points) or bool(self._are_cut(points, int(cut[k])).all())
+    def __init__(
+        self,
+        passes: Sequence[Pass],
+        tool: Tool,
+        stock: PlanningStock,
+        earlier: Iterable[LeaningCutQuery] = (),
+        frame: Frame = WORLD,
+    ) -> None:
+        self._tool, self._stock, self._count = tool, stock, 0
+        self._body = _body(tool)
+        self._flutes = flutes_of(tool, INSIDE)
+        self._cuts = FluteCuts.within(*_box(passes, tool, stock), tool.radius)
+        for cut in earlier:
+            self._cuts.add(*cut.poses_in(frame, STEP), cut.flutes(INSIDE), EARLIER)
+
+    @staticmethod
+    def after(passes: Sequence[Pass], tool: Tool, stock: PlanningStock) -> FlankStock:
+        """Return the stock beside passes that may all be cut."""
+        found = FlankStock(passes, tool, stock)
+        for one in passes:
+            found.add(one)
         return found
+
+    def add(self, one: Pass) -> None:
+        """Put the next pass into the order; it is one of those that this was made with, or a piece of one."""
+        moves = moves_of(one)
+        _, tips, axes = moves.poses(pieces(moves, self._tool, STEP))
+        self._cuts.add(tips, axes, self._flutes, self._count)
+        self._count += 1
+
+    def is_free(
+        self, tips: Floats, axes: Floats, cut: Ints, progress: Progress = NO_PROGRESS
+    ) -> Bools:
+        """Return at which tips (k, 3) with axes (k, 3) nothing above the flutes meets stock when so many passes (k,) are cut."""
+        return self._cuts.is_free(self._body, self._stock, tips, axes, cut, progress)
 
     def tops(self, tips: Floats, cut: Ints) -> Floats:
         """Return that nothing stands over a flank's flutes: it goes out along its axis, where these have been or cut."""
         return np.full(len(tips), -np.inf)
 
-    def _are_cut(self, points: Floats, cut: int) -> Bools:
-        """Return which points (k, 3) were in the flutes on one of so many passes."""
-        tips, axes, of_pass = self._poses
-        middle = points.mean(axis=0)
-        reach = self._reach + float(np.linalg.norm(points - middle, axis=1).max())
-        near = np.array(self._tree.query_ball_point(middle, reach), dtype=np.int64)
-        near = np.sort(near[of_pass[near] < cut])
-        found = np.zeros(len(points), dtype=bool)
-        # Nearest ones last cut: most points are found there.
-        for first in range(len(near), 0, -CHUNK):
-            rows = near[max(first - CHUNK, 0) : first]
-            left = np.flatnonzero(~found)
-            off = points[left, None] - tips[rows]
-            along = (off * axes[rows]).sum(axis=2)
-            square = (off * off).sum(axis=2) - along * along
-            is_in = (along >= 0.0) & (along <= self.tool.flute_length)
-            found[left] = (is_in & (square <= self._radius(along) ** 2)).any(axis=1)
-            if found.all():
-                break
-        return found
 
-    def _radius(self, height: Floats) -> Floats:
-        """Return how far (mm) from the axis points are sure to be in the flutes at heights over the tip."""
-        corner = self.tool.corner_radius
-        over = np.maximum(corner - height, 0.0)
-        rim = self.tool.radius - corner + np.sqrt(np.maximum(corner * corner - over * over, 0.0))
-        return np.maximum(rim - INSIDE, 0.0)
-
-    @cached_property
-    def _body(self) -> Floats:
-        """Points (p, 3) on and in all that is above the flutes, the tip at the origin, its axis z."""
-        turn = 2.0 * math.pi * np.arange(ROUND) / ROUND
-        ring = np.column_stack([np.cos(turn), np.sin(turn)])
-        found = [np.zeros((0, 3))]
-        for z0, r0, z1, r1 in self.tool.profile():
-            count = max(1, math.ceil((z1 - z0) / max(APART, 0.25 * max(r0, r1))))
-            for share in np.linspace(0.0, 1.0, count + 1).tolist():
-                z, r = z0 + share * (z1 - z0), r0 + share * (r1 - r0)
-                # The lowest place is the flutes' own top.
-                up = max(z, self.tool.flute_length)
-                found += [np.column_stack([s * r * ring, np.full(ROUND, up)]) for s in (1.0, 0.5)]
-        return np.vstack(found)
-
-    @cached_property
-    def _poses(self) -> tuple[Floats, Floats, Ints]:
-        """Tips and axes (n, 3) along all passes, and the pass (n,) that each is on."""
-        found = [(*_along(p, self.tool.flute_length), k) for k, p in enumerate(self.passes)]
-        tips, axes = (np.vstack([f[n] for f in found]) for n in (0, 1))
-        return tips, axes, np.repeat([f[2] for f in found], [len(f[0]) for f in found])
-
-    @cached_property
-    def _tree(self) -> cKDTree:
-        tips, axes, _ = self._poses
-        return cKDTree(tips + 0.5 * self.tool.flute_length * axes)
-
-    @property
-    def _reach(self) -> float:
-        """How far in mm the flutes reach from the middle of their axis."""
-        return math.hypot(0.5 * self.tool.flute_length, self.tool.radius)
+def moves_of(one: Pass) -> ToolMoves:
+    """Return the moves of a pass."""
+    return ToolMoves(one.tip[:-1], one.axis[:-1], one.tip[1:], one.axis[1:])
 
 
-def _along(one: Pass, flutes: float) -> tuple[Floats, Floats]:
-    """Return tips and axes (n, 3) along a pass, between which no place of the flutes (mm) goes farther than `STEP`."""
-    moves = ToolMoves(one.tip[:-1], one.axis[:-1], one.tip[1:], one.axis[1:])
-    _, tip, axis = moves.poses(np.ceil((moves.travel + flutes * moves.turn) / STEP))
-    return tip, axis
+def pieces(moves: ToolMoves, tool: Tool, step: float) -> Floats:
+    """Return in how many pieces (k,) no place of a tool's flutes goes farther than a step (mm) on moves."""
+    return np.ceil((moves.travel + tool.flute_length * moves.turn) / step)
 
 
-def _frame(axis: Floats) -> Floats:
-    """Return a right-handed frame (3, 3), in rows, whose third direction is an axis (3,)."""
-    first = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
-    first /= np.linalg.norm(first)
-    return np.array([first, np.cross(axis, first), axis])
+def _body(tool: Tool) -> Floats:
+    """Return points (p, 3) on and in all that is above the flutes, the tip at the origin, its axis z."""
+    round_it, found = ring(ROUND), [np.zeros((0, 3))]
+    for z0, r0, z1, r1 in tool.profile():
+        count = max(1, math.ceil((z1 - z0) / max(APART, 0.25 * max(r0, r1))))
+        for share in np.linspace(0.0, 1.0, count + 1).tolist():
+            z, r = z0 + share * (z1 - z0), r0 + share * (r1 - r0) - SLIMMER
+            # The flutes' own top is nothing to ask for.
+            up = np.full(ROUND, max(z, tool.flute_length + INSIDE))
+            found += [np.column_stack([s * r * round_it, up]) for s in WITHIN]
+    return np.vstack(found)
+
+
+def _box(passes: Sequence[Pass], tool: Tool, stock: PlanningStock) -> tuple[Floats, Floats]:
+    """Return the lowest and the highest corner (3,) of the box in which a tool on passes may meet stock above its flutes."""
+    if not passes:
+        return np.zeros(3), np.zeros(3)
+    tips, axes = (np.vstack([getattr(p, name) for p in passes]) for name in ("tip", "axis"))
+    ends = np.vstack([tips + tool.flute_length * axes, tips + tool.gauge_length * axes])
+    widest = max((max(r0, r1) for _, r0, _, r1 in tool.profile()), default=tool.radius)
+    low, high = ends.min(axis=0) - widest, ends.max(axis=0) + widest
+    high[2] = min(high[2], float(stock.heights.max()))
+    return low, np.maximum(high, low)
