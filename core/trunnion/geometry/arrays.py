@@ -39,6 +39,13 @@ def _fixed(array: NDArray, shape: Sequence[int | None], name: str) -> NDArray:
     return array
 
 
+def items_of(count: Ints) -> tuple[Ints, Ints]:
+    """Return for `count` (k,) items of each of k things, one thing after the other, which thing (p,) each is of, and its number (p,)
+    there, from 0 on."""
+    of = np.repeat(np.arange(len(count)), count)
+    return of, np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+
+
 def unit(vector: ArrayLike, name: str = "direction") -> Floats:
     """Return a vector (…, 3) scaled to length one; raise `ValueError` when it has no direction."""
     array = np.asarray(vector, dtype=np.float64)

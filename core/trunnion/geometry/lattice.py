@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 
 MOST_CELLS = 4_000_000
 """Most cells of a lattice; its pitch grows when a surface is larger than that."""
@@ -36,8 +36,7 @@ def lattice_of(low: Floats, high: Floats, pitch: float) -> Lattice:
     first, last = (np.floor((at - corner) / pitch).astype(np.int64) for at in (low, high))
     wide = last - first + 1
     count = wide.prod(axis=1)
-    box = np.repeat(np.arange(len(low)), count)
-    within = np.arange(len(box)) - np.repeat(np.cumsum(count) - count, count)
+    box, within = items_of(count)
     cell = (
         (first[box, 1] + within // wide[box, 0]) * shape[0] + first[box, 0] + within % wide[box, 0]
     )

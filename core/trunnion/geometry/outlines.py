@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 from trunnion.geometry.kernels.outline import points_in_polygon_loop
 
 
@@ -29,12 +29,8 @@ class Outlines:
         count = max(1, min(4 * len(pieces), 4096))
         pitch = max(float(top.max()) - low, near) / count * (1.0 + 1e-9)
         first, last = (np.floor((y - low) / pitch).astype(np.int64) for y in (bottom, top))
-        times = last - first + 1
-        strip = (
-            np.repeat(first, times)
-            + np.arange(times.sum())
-            - np.repeat(np.cumsum(times) - times, times)
-        )
+        piece, number = items_of(last - first + 1)
+        strip = first[piece] + number
         order = np.argsort(strip, kind="stable")
         start = np.searchsorted(strip[order], np.arange(count + 1))
         return Outlines(
@@ -43,7 +39,7 @@ class Outlines:
             low=low,
             pitch=pitch,
             start=start,
-            rows=np.repeat(np.arange(len(pieces)), times)[order],
+            rows=piece[order],
         )
 
     def within(self, positions: Floats) -> Ints:

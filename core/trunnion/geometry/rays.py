@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 
 TOGETHER = 4_000_000
 """Pairs of triangles and rays that are looked at together: some hundred MB of tables."""
@@ -217,15 +217,10 @@ class _Bins:
         return found
 
     def _some(self, some: Ints, first: Ints, last: Ints, n_cells: Ints) -> tuple[Ints, Ints]:
-        triangle, k = _spread(some, n_cells[some])
+        of, k = items_of(n_cells[some])
+        triangle = some[of]
         across = last[triangle, 1] - first[triangle, 1] + 1
         cell = (first[triangle, 0] + k // across) * self.shape[1] + first[triangle, 1] + k % across
         many = self.start[cell + 1] - self.start[cell]
-        owner, k = _spread(np.arange(len(cell)), many)
+        owner, k = items_of(many)
         return triangle[owner], self.order[self.start[cell[owner]] + k]
-
-
-def _spread(values: Ints, count: Ints) -> tuple[Ints, Ints]:
-    """Return each value as often as its count says, and which of its own (0, 1, ...) each is."""
-    repeated = np.repeat(values, count)
-    return repeated, np.arange(len(repeated)) - np.repeat(np.cumsum(count) - count, count)

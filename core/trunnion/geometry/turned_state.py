@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.tolerance import CHORD, COINCIDENT
 
 STEP = 2.0
@@ -146,8 +146,8 @@ def _take_edges(a: Floats, b: Floats, level: Floats, outer: Floats, inner: Float
     first = np.clip(np.searchsorted(level, low, side="right") - 1, 0, len(outer) - 1)
     last = np.clip(np.searchsorted(level, high, side="left") - 1, first, len(outer) - 1)
     size = last - first + 1
-    edge = np.repeat(np.arange(len(a)), size)
-    row = np.arange(len(edge)) - np.repeat(np.cumsum(size) - size, size) + first[edge]
+    edge, number = items_of(size)
+    row = number + first[edge]
     rise = np.maximum(b[:, 2] - a[:, 2], COINCIDENT)[edge]
     ends = [
         r0[edge] + (r1 - r0)[edge] * np.clip((level[row + k] - a[edge, 2]) / rise, 0.0, 1.0)

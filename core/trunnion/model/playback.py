@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.model.tool import Tool
 
 CHORD_ANGLE = math.radians(6.0)
@@ -127,9 +127,8 @@ class Timeline:
         """Return the way of the tip in a passage with its arcs opened into chords: points (k, 3) and their positions (k,)."""
         blocks = np.arange(self.first[passage], self.first[passage + 1])
         pieces = np.maximum(1, np.ceil(np.abs(self.sweep[blocks]) / CHORD_ANGLE)).astype(int)
-        block = np.repeat(blocks, pieces)
-        step = np.arange(len(block)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
-        share = step / np.repeat(pieces, pieces)
+        of, number = items_of(pieces)
+        block, share = blocks[of], (number + 1) / pieces[of]
         return self.poses(block, share)[0], block + share
 
 

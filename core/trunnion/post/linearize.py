@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.findings import Refused
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import Tool
 from trunnion.shop.kinematics import (
@@ -346,6 +346,6 @@ def even_turn(first: Floats, last: Floats, share: Floats) -> Floats:
 
 def _shares(n: Ints) -> tuple[Ints, Floats]:
     """Return for things parted in n (p,) which each part belongs to (k,), and the share (k,) of it where the part ends, 1 exactly last."""
-    owner = np.repeat(np.arange(len(n)), n)
-    count = np.arange(len(owner)) - np.repeat(np.cumsum(n) - n, n) + 1
+    owner, number = items_of(n)
+    count = number + 1
     return owner, count / n[owner]

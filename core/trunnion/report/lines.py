@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.playback import CHORD_ANGLE, turned_axes
 
@@ -36,8 +36,8 @@ def opened(path: Toolpath) -> tuple[Floats, Ints]:
     start, sweep = path.starts(), path.sweeps()
     pieces = np.maximum(1, np.ceil(np.abs(sweep) / CHORD_ANGLE)).astype(np.int64)
     pieces[0] = 0
-    row = np.repeat(np.arange(len(path)), pieces)
-    step = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
+    row, number = items_of(pieces)
+    step = number + 1
     share = step / pieces[row]
     points = start[row] + (path.position[row] - start[row]) * share[:, None]
     turned = np.flatnonzero(sweep[row] != 0.0)

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.kernels.point_groups import first_of_group
 from trunnion.geometry.plane.curve import FULL, Segments, chord_counts, compiled_pays
 from trunnion.geometry.plane.intersections import CLOSE, crossings, overlapping_boxes
@@ -126,8 +126,8 @@ def _inner_points(s: Segments, chord: float) -> tuple[Ints, Floats, Floats]:
     first = np.ceil(low / step + 0.01).astype(np.int64)
     last = np.floor(high / step - 0.01).astype(np.int64)
     count = np.maximum(0, last - first + 1)
-    row = np.repeat(np.arange(len(arcs)), count)
-    number = first[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    row, number = items_of(count)
+    number = first[row] + number
     angle = (number % parts[row]) * step[row]
     point = s.centre[arcs][row] + radius[row, None] * np.stack(
         [np.cos(angle), np.sin(angle)], axis=1

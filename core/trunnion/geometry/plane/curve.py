@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats, Ints, floats
+from trunnion.geometry.arrays import Floats, Ints, floats, items_of
 from trunnion.geometry.kernels import distance as distance_kernels
 
 FULL = 2.0 * math.pi
@@ -307,8 +307,7 @@ class Curve:
         """
         seg = self.segments()
         count = chord_counts(seg, chord)
-        rows = np.repeat(np.arange(len(seg)), count)
-        step = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
+        rows, step = items_of(count)
         inner = seg.at(rows, step / count[rows] * seg.length[rows])
         inner[step == 0] = seg.start
         return np.concatenate([inner, seg.end[-1:]])

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, items_of
 from trunnion.geometry.plane.curve import Curve, segment_boxes
 from trunnion.geometry.plane.region import Region
 
@@ -31,8 +31,8 @@ def points_along(curve: Curve, spacing: float = SPACING) -> tuple[Floats, Floats
     """
     seg = curve.segments()
     count = np.maximum(np.ceil(seg.length / spacing), 1).astype(np.int64)
-    rows = np.repeat(np.arange(len(seg)), count)
-    share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)) / count[rows]
+    rows, number = items_of(count)
+    share = number / count[rows]
     before = np.cumsum(seg.length) - seg.length
     lengths = before[rows] + share * seg.length[rows]
     points = seg.at(rows, share * seg.length[rows])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 from trunnion.geometry.plane.curve import FULL, Segments, segment_boxes
 
 CLOSE = tolerance.COINCIDENT
@@ -62,8 +62,8 @@ def overlapping_boxes(s: Segments) -> tuple[Ints, Ints]:
     order = np.argsort(low[:, 0], kind="stable")
     begin = np.arange(1, len(s) + 1)
     count = np.searchsorted(low[order, 0], high[order, 0], side="right") - begin
-    one = np.repeat(np.arange(len(s)), count)
-    other = begin[one] + np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count)
+    one, number = items_of(count)
+    other = begin[one] + number
     one, other = order[one], order[other]
     meet = (low[one, 1] <= high[other, 1]) & (low[other, 1] <= high[one, 1])
     i, j = np.minimum(one, other)[meet], np.maximum(one, other)[meet]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.kernels.shortest_paths.fast_marching_compiled import chain_loop
 from trunnion.geometry.sheet.sheet import Sheet
 
@@ -73,8 +73,8 @@ def whole_levels(sheet: Sheet, field: Floats, turns: Ints | None = None) -> list
     value = field[triangles] + turns
     low = np.ceil(value.min(axis=1)).astype(np.int64)
     count = np.maximum(np.ceil(value.max(axis=1)).astype(np.int64) - low, 0)
-    row = np.repeat(np.arange(len(triangles)), count)
-    level = low[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    row, number = items_of(count)
+    level = low[row] + number
     above = field[triangles[row]] > level[:, None] - turns[row]
     after = above[:, [1, 2, 0]]
     real = above.any(axis=1) & ~above.all(axis=1)

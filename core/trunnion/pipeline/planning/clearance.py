@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, items_of
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.geometry.sphere import angle_between
@@ -163,8 +163,8 @@ class ToolClearanceQuery:
         turn = angle_between(start, end)
         held = np.ones(len(end), dtype=bool)
         between = np.maximum(np.ceil(turn / HELD), 1.0).astype(np.int64) - 1
-        way = np.repeat(np.arange(len(end)), between)
-        number = np.arange(len(way)) - np.repeat(np.cumsum(between) - between, between) + 1
+        way, number = items_of(between)
+        number = number + 1
         if len(way):
             axes = slerp(start[way], end[way], number / (between[way] + 1.0))
             held[way[~self._around.holds(axes)]] = False

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from trunnion.geometry.arrays import Bools, Floats, unit
+from trunnion.geometry.arrays import Bools, Floats, items_of, unit
 from trunnion.geometry.frame import Frame
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import Tool
@@ -41,9 +41,9 @@ class CutSpace:
         step = math.sqrt(8.0 * radius * RIDGE)
         run = np.linalg.norm(centre[fed + 1] - centre[fed], axis=1)
         count = np.maximum(np.ceil(run / step), 1.0).astype(np.int64)
-        rows = np.repeat(fed, count)
-        number = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
-        share = ((number + 1.0) / np.repeat(count, count))[:, None]
+        of, number = items_of(count)
+        rows = fed[of]
+        share = ((number + 1.0) / count[of])[:, None]
         return CutSpace(
             centre=centre[rows] + share * (centre[rows + 1] - centre[rows]),
             axis=unit(path.axis[rows] + share * (path.axis[rows + 1] - path.axis[rows])),

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, items_of
 from trunnion.geometry.plane.plan_area import plan_area_above
 from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.operation import Operation
@@ -201,8 +201,8 @@ def is_free_of_part(
         return True
     rim = axis_region.segments()
     count = np.maximum(np.ceil(rim.length / RIM_SPACING), 1.0).astype(np.int64)
-    row = np.repeat(np.arange(len(rim)), count)
-    share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
+    row, number = items_of(count)
+    share = number / count[row]
     disc = level_disc(max(tool.radius - TOUCHING, 0.5 * tool.radius))
     progress.check()
     over = space.skin.drop.drop(

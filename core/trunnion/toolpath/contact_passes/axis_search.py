@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 
 from trunnion.findings import Finding, Refused, warning
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.kernels.shortest_paths.least_cost_path_compiled import least_cost_path
 from trunnion.geometry.sphere import angle_between, directions, neighbours
 from trunnion.model.tool import Holder, Tool
@@ -224,8 +224,8 @@ def _finely(run: FreeAxes, rows: Floats, turn: float) -> Floats:
     position = np.unique(np.concatenate([[low], rows[(rows > low) & (rows < high)], [high]]))
     axis = run.at(position)
     count = np.maximum(1, np.ceil(angle_between(axis[:-1], axis[1:]) / turn)).astype(np.int64)
-    owner = np.repeat(np.arange(len(count)), count)
-    share = (np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)) / count[owner]
+    owner, number = items_of(count)
+    share = number / count[owner]
     return np.append(position[owner] + share * np.diff(position)[owner], high)
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.sheet.sheet import sheet_of
 from trunnion.geometry.sheet.skin import Skin
 
@@ -41,8 +41,8 @@ class OverrunStrip:
             a, b = rim, np.roll(rim, -1)
             size = np.linalg.norm(sheet.points[b] - sheet.points[a], axis=1)
             count = np.maximum(np.ceil(size / (CLOSE * width)), 1.0).astype(np.int64)
-            row = np.repeat(np.arange(len(rim)), count)
-            share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)) / count[row]
+            row, number = items_of(count)
+            share = number / count[row]
             for x, out in ((sheet.points, position), (sheet.normals, normal)):
                 out.append(x[a[row]] + share[:, None] * (x[b[row]] - x[a[row]]))
         joined = np.concatenate(normal)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats, Ints, floats
+from trunnion.geometry.arrays import Bools, Floats, Ints, floats, items_of
 
 UPRIGHT = np.array([0.0, 0.0, 1.0])
 
@@ -58,8 +58,7 @@ def spaced(tip: Floats, step: float) -> tuple[Floats, Ints]:
     is on."""
     moved = np.linalg.norm(np.diff(tip, axis=0), axis=1)
     count = np.maximum(np.ceil(moved / step), 1.0).astype(np.int64)
-    row = np.repeat(np.arange(len(count)), count)
-    number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    row, number = items_of(count)
     share = (number / count[row])[:, None]
     positions = np.vstack([tip[row] + share * (tip[row + 1] - tip[row]), tip[-1:]])
     return positions, np.append(row, len(count) - 1)

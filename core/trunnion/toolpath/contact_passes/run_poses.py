@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import tip_at
@@ -126,7 +126,7 @@ class AxisRuns:
         count = np.ceil(self.axis_position[self.start[1:] - 1]).astype(np.int64) - low
         number = np.arange(len(self.first))
         run = np.concatenate([np.repeat(number, np.diff(self.start)), np.repeat(number, count)])
-        position = np.concatenate([self.axis_position, low.repeat(count) + _numbered(count)])
+        position = np.concatenate([self.axis_position, low.repeat(count) + items_of(count)[1]])
         order = np.argsort(self.order(run, position), kind="stable")
         return run[order], position[order]
 
@@ -184,7 +184,7 @@ class RunPoses:
         low = np.searchsorted(own, here[blocks] + tolerance.PARAMETRIC)
         count = np.searchsorted(own, here[blocks + 1] - tolerance.PARAMETRIC) - low
         count = np.maximum(count, 0)
-        row = np.repeat(low, count) + _numbered(count)
+        row = np.repeat(low, count) + items_of(count)[1]
         return owner[row], runs.axis_position[row]
 
     def off(self, blocks: Ints, inner: tuple[Ints, Floats], chord: float) -> Floats:
@@ -202,7 +202,7 @@ class RunPoses:
         width = position[blocks + 1] - position[blocks]
         probe = np.concatenate(
             [
-                inner[1][np.repeat(low, count) + _numbered(count)],
+                inner[1][np.repeat(low, count) + items_of(count)[1]],
                 *(position[blocks] + share * width for share in SHARES),
             ]
         )
@@ -239,8 +239,3 @@ def poses_along(runs: AxisRuns, chord: float) -> RunPoses:
         first = split + np.arange(len(split))
         blocks = np.column_stack([first, first + 1]).ravel()
     return made
-
-
-def _numbered(count: Ints) -> Ints:
-    """Return 0, 1, 2 ... for each of some counts, one after the other."""
-    return np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 from trunnion.geometry.sphere import angle_between
 from trunnion.toolpath.contact_passes.contacts import slerp
 
@@ -29,13 +29,13 @@ class ToolMoves:
     def shares(self, pieces: Floats) -> tuple[Ints, Floats]:
         """Return where `poses` are: the number (p,) of the way of each, and its share (p,) of that."""
         count = np.maximum(pieces, 1.0).astype(np.int64)
-        way, number = _numbered(count + 1)
+        way, number = items_of(count + 1)
         return way, number / count[way]
 
     def middles(self, pieces: Floats) -> tuple[Ints, Floats, Floats]:
         """Return the poses in the middles of so many equal pieces (k,) of each way: its number (p,), tips and axes (p, 3)."""
         count = np.maximum(pieces, 1.0).astype(np.int64)
-        way, number = _numbered(count)
+        way, number = items_of(count)
         return way, *self.at(way, (number + 0.5) / count[way])
 
     def at(self, way: Ints, share: Floats) -> tuple[Floats, Floats]:
@@ -43,9 +43,3 @@ class ToolMoves:
         start_tip, start_axis, tip, axis = (v[way] for v in self._ends)
         tips = start_tip + share[:, None] * (tip - start_tip)
         return tips, slerp(start_axis, axis, share)
-
-
-def _numbered(count: Ints) -> tuple[Ints, Ints]:
-    """Return for `count` (k,) items of each of k things which one (p,) each is of, and its number (p,) there."""
-    of = np.repeat(np.arange(len(count)), count)
-    return of, np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)

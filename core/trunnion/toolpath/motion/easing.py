@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
@@ -97,8 +97,7 @@ def _eased(
 def in_pieces(path: Toolpath, piece: float, cuts: Bools) -> tuple[Toolpath, Ints]:
     """Return a path with some blocks, `cuts` (n,), in pieces no longer than `piece` mm, and the block (m,) that each is of."""
     count = np.where(cuts, np.maximum(np.ceil(path.lengths() / piece), 1.0), 1.0).astype(np.int64)
-    rows = np.repeat(np.arange(len(path)), count)
-    step_index = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
+    rows, step_index = items_of(count)
     position = positions_on(path, rows, (step_index + 1) / count[rows])
     ends = step_index + 1 == count[rows]
     position[ends] = path.position[rows[ends]]

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from trunnion.findings import Refused
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 from trunnion.geometry.development import Development
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.plane.curve import turn
@@ -32,8 +32,7 @@ def rolled(path: Toolpath, development: Development, frame: Frame, chord: float)
     start = path.starts()
     start[0] = path.position[0]
     count = _pieces(path, start, development, chord)
-    row = np.repeat(np.arange(len(path)), count)
-    piece = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+    row, piece = items_of(count)
     flat = _positions(path, start, row, (piece + 1) / count[row])
     n = len(row)
     return Toolpath(

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.kernels import heightfield
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.tool import Tool
@@ -83,8 +83,7 @@ class ColumnCutGrid:
         begin, end = np.maximum(begin, 0), np.minimum(end, shape)
         wide = np.maximum(end - begin, 0)
         count = wide.prod(axis=1)
-        row = np.repeat(np.arange(len(count)), count)
-        number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+        row, number = items_of(count)
         deep = np.maximum(wide[row, 1], 1)
         square = (begin[row, 0] + number // deep) * shape[1] + begin[row, 1] + number % deep
         order = np.argsort(square, kind="stable")

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from trunnion import tolerance
 from trunnion.findings import OutOfMemory
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.kernels import heightfield
 from trunnion.geometry.plane.curve import turn
@@ -327,8 +327,7 @@ def chords(path: Toolpath) -> tuple[Floats, Floats, Ints, float]:
         step = 2.0 * np.arccos(np.clip(1.0 - ARC_CHORD / radius[arcs], 0.0, 1.0))
     count[arcs] = np.maximum(np.ceil(np.abs(sweep[arcs]) / step), 1).astype(np.int64)
     count[path.motion == Motion.RAPID] = 0
-    rows = np.repeat(np.arange(len(path)), count)
-    step_index = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)
+    rows, step_index = items_of(count)
     share = np.stack([step_index, step_index + 1], axis=1) / count[rows][:, None]
     ends = [_positions(path, start, sweep, rows, share[:, k]) for k in (0, 1)]
     return ends[0], ends[1], rows, ARC_CHORD if arcs.any() else 0.0

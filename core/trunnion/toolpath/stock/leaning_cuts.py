@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, items_of
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sphere import angle_between
 from trunnion.model.motion.toolpath import Motion, Toolpath
@@ -47,10 +47,8 @@ class LeaningCut:
         moved = np.linalg.norm(path.position - start, axis=1) + self.tool.flute_length * turn
         count = np.maximum(np.ceil(moved / step), 1.0).astype(np.int64)
         count[path.motion == Motion.RAPID] = 0
-        rows = np.repeat(np.arange(len(path)), count)
-        share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count) + 1) / count[
-            rows
-        ]
+        rows, number = items_of(count)
+        share = (number + 1) / count[rows]
         axis = turned_from[rows] + share[:, None] * (path.axis[rows] - turned_from[rows])
         axis /= np.linalg.norm(axis, axis=1, keepdims=True)
         tip = self.frame.to_world(positions_on(path, rows, share))

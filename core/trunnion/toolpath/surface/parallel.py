@@ -15,7 +15,7 @@ import shapely
 
 from trunnion import tolerance
 from trunnion.findings import Finding, Refused, face_tags, warning
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.model.operation import CuttingData
@@ -410,8 +410,8 @@ def _runs(
     count = (
         np.ceil((planes.reach[:, 1] - planes.reach[:, 0]) / step).astype(np.int64) + 1 + 2 * before
     )
-    plane = np.repeat(np.arange(len(count)), count)
-    step_index = np.arange(len(plane)) - np.repeat(np.cumsum(count) - count, count) - before
+    plane, number = items_of(count)
+    step_index = number - before
     run = planes.reach[plane, 0] + step_index * step
     on = has_contact(plane, run, progress.part(0.0, 0.8))
     on[[*(np.cumsum(count) - count), *(np.cumsum(count) - 1)]] = False

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.model.tool import PLAIN_FORMS
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.threads import in_parallel
@@ -348,8 +348,7 @@ def tree_of(moves: Moves, rows: Ints, flutes: Flutes) -> SpanTree:
     motion, tool = tool_motions(moves, rows), moves.tool[rows]
     run = moves.length[rows] + motion[:, kernel.TURN] * flutes.middle[tool]
     count = np.clip(np.ceil(run / SPAN), 1, MOST_SPANS).astype(np.int64)
-    of = np.repeat(np.arange(len(rows)), count)
-    within = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    of, within = items_of(count)
     low, high, middle = within / count[of], (within + 1) / count[of], flutes.middle[tool[of]]
     pose, reach = kernel.span_poses(motion, of, low, high, middle)
     order = np.lexsort((_along_curve(pose[:, :3]), tool[of]))

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.boxes import boxes_around
 from trunnion.geometry.frame import Frame
 from trunnion.verify.contact import Contact, PartContact
@@ -101,9 +101,8 @@ def _tips(moves: Moves, rows: Ints) -> tuple[Floats, Ints]:
     """Return tips (k, 3) along some moves, both ends among them, and the move (k,) that each is on."""
     apart = max(APART, float(moves.length[rows].sum()) / MOST_TIPS)
     count = np.ceil(moves.length[rows] / apart).astype(np.int64) + 1
-    of = np.repeat(rows, count)
-    step = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
-    share = step / np.maximum(np.repeat(count, count) - 1, 1)
+    owner, step = items_of(count)
+    of, share = rows[owner], step / np.maximum(count[owner] - 1, 1)
     tip = moves.start[of] + share[:, None] * (moves.end[of] - moves.start[of])
     arc = moves.sweep[of] != 0.0
     tip[arc] = on_arcs(moves, of[arc], share[arc])

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.model.material import Axis, Machine, leaning_axis
 from trunnion.model.motion.program import NO_STANCES, Stance
 from trunnion.verify.kernels.rotary import choose_angles_greedy
@@ -76,10 +76,8 @@ def poses_of(moves: Moves) -> tuple[Ints, Floats, Floats]:
         1, np.ceil(np.maximum(between, np.abs(moves.sweep)) / STEP - UNTURNED)
     ).astype(np.int64)
     steps[list(moves.stances)] = 1
-    move = np.repeat(np.arange(len(moves)), steps + 1)
-    share = (np.arange(len(move)) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)) / steps[
-        move
-    ]
+    move, number = items_of(steps + 1)
+    share = number / steps[move]
     tip = moves.start[move] + share[:, None] * (moves.end - moves.start)[move]
     arc = moves.sweep[move] != 0.0
     if arc.any():

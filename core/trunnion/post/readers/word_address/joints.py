@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.tool import AnyTool, Tool, rotating
 from trunnion.post.linearize import even_turn
@@ -115,8 +115,7 @@ class Joints:
         """Return the pieces of blocks (b,) that turn: the block of each (k,) and the share of it where it ends."""
         turn = np.abs(angle[block] - angle[block - 1]).max(axis=1)
         first = np.maximum(1, np.ceil(turn / FIRST_PIECE)).astype(np.int64)
-        owner = np.repeat(np.arange(len(block)), first)
-        index_in_owner = np.arange(len(owner)) - np.repeat(np.cumsum(first) - first, first)
+        owner, index_in_owner = items_of(first)
         start, end = index_in_owner / first[owner], (index_in_owner + 1) / first[owner]
         row = block[owner]
         rapid = motion[row] == Motion.RAPID
@@ -124,8 +123,8 @@ class Joints:
         reach = np.where(rapid, tool.stickout, tool.flute_length)[:, None]
         strays = self._strays(words, angle, tool.gauge_length, row, start, end, reach)
         more = np.maximum(1, np.ceil(np.sqrt(strays / allowed))).astype(np.int64)
-        again = np.repeat(np.arange(len(row)), more)
-        number = np.arange(len(again)) - np.repeat(np.cumsum(more) - more, more) + 1
+        again, number = items_of(more)
+        number = number + 1
         share = np.where(
             number == more[again],
             end[again],

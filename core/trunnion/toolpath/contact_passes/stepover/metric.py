@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 
 from trunnion import tolerance
 from trunnion.findings import Refused
-from trunnion.geometry.arrays import Floats, Ints
+from trunnion.geometry.arrays import Floats, Ints, items_of
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import ROUND, C
 from trunnion.geometry.sheet.fields import Metric
 from trunnion.geometry.sheet.sheet import Measure, Sheet, between
@@ -145,10 +145,8 @@ def _held_past_jumps(sheet: Sheet, ends: Ints, side: Ints, lengths: Floats) -> F
     count = np.maximum(
         np.ceil(size[edge[jumps]] * np.sqrt(square[jumps]) / (0.5 * PAST)), 1.0
     ).astype(np.int64)
-    row = np.repeat(jumps, count)
-    share = (np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count) + 0.5) / np.repeat(
-        count, count
-    )
+    jump, number = items_of(count)
+    row, share = jumps[jump], (number + 0.5) / count[jump]
     tree = cKDTree(sheet.points[ends[edge[row], 0]] + share[:, None] * run[edge[row]])
     # The rounder side holds no farther than the flatter one's stepovers are wide.
     middle = 0.5 * (sheet.points[ends[:, 0]] + sheet.points[ends[:, 1]])

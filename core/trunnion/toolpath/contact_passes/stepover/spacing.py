@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints, unit
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of, unit
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.cutters.cutter import tip_at
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -171,6 +171,5 @@ def least_over(first: Ints, last: Ints, values: Floats, count: int) -> Floats:
 def strips_over(low: Floats, high: Floats, begin: float, width: float) -> tuple[Ints, Ints]:
     """Return the strips of a width from `begin` on that things from low to high (m,) lie over, (k,), and the row (k,) of each thing."""
     first, last = (((v - begin) / width).astype(np.int64) for v in (low, high))
-    count = last - first + 1
-    row = np.repeat(np.arange(len(first)), count)
-    return first[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count), row
+    row, number = items_of(last - first + 1)
+    return first[row] + number, row

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.kernels.stock_points import UNCUT, cut_points
 from trunnion.model.tool import Tool
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -149,8 +149,7 @@ class _FinePass:
         """Return a pass in moves no longer than a step (mm)."""
         long = np.linalg.norm(np.diff(one.tip, axis=0), axis=1)
         count = np.maximum(np.ceil(long / step), 1.0).astype(np.int64)
-        row = np.repeat(np.arange(len(count)), count)
-        number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+        row, number = items_of(count)
         share = (number / count[row])[:, None]
         tip = np.vstack([one.tip[row] + share * (one.tip[row + 1] - one.tip[row]), one.tip[-1:]])
         row = np.append(row, len(one) - 1)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats, Ints
+from trunnion.geometry.arrays import Bools, Floats, Ints, items_of
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import RHO1, height_at
 from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.progress import NO_PROGRESS, Progress
@@ -151,8 +151,8 @@ def _spaced(curves: Sequence[Floats], step: float) -> tuple[Floats, Ints]:
     count = np.where(
         inside, np.maximum(np.ceil(np.hypot(direction[:, 0], direction[:, 1]) / step), 1.0), 1.0
     ).astype(np.int64)
-    rows = np.repeat(np.arange(len(points)), count)
-    share = (np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count)) / count[rows]
+    rows, number = items_of(count)
+    share = number / count[rows]
     return points[rows] + share[:, None] * np.where(inside[rows, None], direction[rows], 0.0), line[
         rows
     ]
