@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numba import njit
 
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, Ints
 
 HALF_DIAGONAL = math.sqrt(0.5)
 
@@ -187,26 +187,68 @@ def columns_cut(
     A column gets the height of the cutter's lower side over it, for the move's higher end, where the flutes, of this length from the tip,
     reach over its top at the lower end; under a higher one they pass.
     """
-    flat = radius - corner
     for k in range(len(heights)):
         top = heights[k]
         for n in range(len(starts)):
-            z = max(starts[n, 2], ends[n, 2])
-            if top <= z or top > min(starts[n, 2], ends[n, 2]) + flutes:
-                continue
-            px, py = points[k, 0] - starts[n, 0], points[k, 1] - starts[n, 1]
-            dx, dy = ends[n, 0] - starts[n, 0], ends[n, 1] - starts[n, 1]
-            square = dx * dx + dy * dy
-            t = min(max((px * dx + py * dy) / square, 0.0), 1.0) if square > 0.0 else 0.0
-            away = math.hypot(px - t * dx, py - t * dy)
-            if away > radius:
-                continue
-            if away > flat:
-                # Quarter circle of the corner: corner - sqrt(corner^2 - inner^2).
-                inner = away - flat
-                z += corner - math.sqrt(max(corner * corner - inner * inner, 0.0))
-            top = min(top, z)
+            top = _top_under(top, points[k], starts[n], ends[n], radius, corner, flutes)
         heights[k] = top
+
+
+@njit(cache=True, nogil=True)
+def columns_cut_by_squares(
+    heights: Floats,
+    points: Floats,
+    low: Floats,
+    side: float,
+    shape: Ints,
+    rows: Ints,
+    first: Ints,
+    done: Bools,
+    starts: Floats,
+    ends: Floats,
+    radius: float,
+    corner: float,
+    flutes: float,
+) -> None:
+    """Do as `columns_cut` does under those moves (n,) alone that are `done`, each looked for only where it comes to: in squares of a side
+    from `low` (2,) on, the moves of square k are `rows` from first[k] to first[k + 1], in their order."""
+    for k in range(len(heights)):
+        i = min(max(int(math.floor((points[k, 0] - low[0]) / side)), 0), shape[0] - 1)
+        j = min(max(int(math.floor((points[k, 1] - low[1]) / side)), 0), shape[1] - 1)
+        top, square = heights[k], i * shape[1] + j
+        for e in range(first[square], first[square + 1]):
+            n = rows[e]
+            if done[n]:
+                top = _top_under(top, points[k], starts[n], ends[n], radius, corner, flutes)
+        heights[k] = top
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _top_under(
+    top: float,
+    point: Floats,
+    start: Floats,
+    end: Floats,
+    radius: float,
+    corner: float,
+    flutes: float,
+) -> float:
+    """Return how high a move leaves a column at a point (2,) that is `top` high."""
+    z = max(start[2], end[2])
+    if top <= z or top > min(start[2], end[2]) + flutes:
+        return top
+    px, py = point[0] - start[0], point[1] - start[1]
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    square = dx * dx + dy * dy
+    t = min(max((px * dx + py * dy) / square, 0.0), 1.0) if square > 0.0 else 0.0
+    away = math.hypot(px - t * dx, py - t * dy)
+    if away > radius:
+        return top
+    if away > radius - corner:
+        # Quarter circle of the corner: corner - sqrt(corner^2 - inner^2).
+        inner = away - (radius - corner)
+        z += corner - math.sqrt(max(corner * corner - inner * inner, 0.0))
+    return min(top, z)
 
 
 def zmap_cut_reference(

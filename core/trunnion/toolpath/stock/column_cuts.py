@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -46,10 +45,7 @@ class ColumnCuts:
         low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
         a, b = self.starts[:, :2], self.ends[:, :2]
         near = ((np.maximum(a, b) > low) & (np.minimum(a, b) < high)).all(axis=1)
-        return self._lowered(heights, points, np.flatnonzero(near))
-
-    def _lowered(self, heights: Floats, points: Floats, rows: Ints) -> Floats:
-        left = heights.copy()
+        rows, left = np.flatnonzero(near), heights.copy()
         heightfield.columns_cut(
             left,
             np.ascontiguousarray(points),
@@ -62,7 +58,7 @@ class ColumnCuts:
         return left
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class ColumnCutGrid:
     """Straight cuts that are looked up by squares of a plan with a lower corner (2,): those of square k are `rows` from first[k] on, in
     their order."""
@@ -88,28 +84,35 @@ class ColumnCutGrid:
         square = (begin[row, 0] + number // deep) * shape[1] + begin[row, 1] + number % deep
         order = np.argsort(square, kind="stable")
         first = np.searchsorted(square[order], np.arange(shape.prod() + 1))
-        return ColumnCutGrid(cuts, low, shape, row[order], first)
+        ready = replace(
+            cuts, starts=np.ascontiguousarray(cuts.starts), ends=np.ascontiguousarray(cuts.ends)
+        )
+        return ColumnCutGrid(ready, np.array(low), shape, row[order], first)
 
     def lowered(self, heights: Floats, points: Floats, done: Bools | None = None) -> Floats:
         """Return the heights (k,) that the cuts leave of columns at points (k, 2) of the plan; of the cuts (n,) only those that are `done`
         where that is given."""
-        left = heights.copy()
-        for square, some in self._squares(points):
-            rows = self.rows[self.first[square] : self.first[square + 1]]
-            if done is not None:
-                rows = rows[done[rows]]
-            if len(rows):
-                left[some] = self.cuts._lowered(left[some], points[some], rows)
+        left, cuts = heights.copy(), self.cuts
+        heightfield.columns_cut_by_squares(
+            left,
+            np.ascontiguousarray(points),
+            self.corner,
+            SQUARE,
+            self.shape,
+            self.rows,
+            self.first,
+            self._all if done is None else done,
+            cuts.starts,
+            cuts.ends,
+            cuts.radius,
+            cuts.corner_radius,
+            cuts.flute_length,
+        )
         return left
 
-    def _squares(self, points: Floats) -> Iterator[tuple[int, Ints]]:
-        """Yield each square that some of points (k, 2) lie in, with these."""
-        at = np.clip(np.floor((points - self.corner) / SQUARE).astype(np.int64), 0, self.shape - 1)
-        square = at[:, 0] * self.shape[1] + at[:, 1]
-        order = np.argsort(square, kind="stable")
-        for some in np.split(order, np.flatnonzero(np.diff(square[order])) + 1):
-            if len(some):
-                yield int(square[some[0]]), some
+    @cached_property
+    def _all(self) -> Bools:
+        return np.ones(len(self.cuts.starts), dtype=bool)
 
 
 @lru_cache(maxsize=CIRCLES)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -63,7 +63,8 @@ def leads_of(
 ) -> Leads:
     """Return the leads onto all passes and off them: quarter circles, lifted where they would gouge."""
     starts, finishes = (_PassEnds.of(passes, at_end=at_end) for at_end in (False, True))
-    radius_in, radius_out = (e.radii(parameters) for e in (starts, finishes))
+    # Asked for together: stock is cut anew, pass by pass, each time it is asked for.
+    radius_in, radius_out = np.split(starts.with_others(finishes).radii(parameters), 2)
     lead_in, lead_out = starts.arcs(radius_in)[:, ::-1], finishes.arcs(radius_out)
     upright = np.array([[is_upright(p.axis[row]) for p in passes] for row in (0, -1)])
     # Drop the cutter at all points of leads and of the chords between them, and lift what would gouge: max(floor + allowance - z, 0).
@@ -167,6 +168,15 @@ class _PassEnds:
             normal=np.array([p.normal[row] for p in passes]),
             axis=np.array([p.axis[row] for p in passes]),
             cut=np.arange(len(passes)) + int(at_end),
+        )
+
+    def with_others(self, others: _PassEnds) -> _PassEnds:
+        """Return these ends and others behind them."""
+        return _PassEnds(
+            **{
+                f.name: np.concatenate([getattr(self, f.name), getattr(others, f.name)])
+                for f in fields(self)
+            }
         )
 
     def arcs(self, radius: Floats) -> Floats:
