@@ -10,6 +10,7 @@ from PySide6.QtCore import QPoint, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
+from trunnion.model.guides import GuideCurve
 from trunnion.model.playback import Moment
 from trunnion.model.session import Session, SizeEntry
 from trunnion.report.deviation import WorstPoint
@@ -20,6 +21,7 @@ from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.families.contract import Colouring, LegendRow
 from trunnion_gui.families.views import Views
+from trunnion_gui.guides import GuideSource
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import legend
 from trunnion_gui.look.colours import Theme, motions
@@ -65,11 +67,13 @@ class ViewportPane(QWidget):
         theme: Theme,
         player: Player,
         deviation: DeviationSource,
+        guides: GuideSource,
         views: Views,
     ) -> None:
         super().__init__()
         self._document = document
         self._player, self._deviation, self._views = player, deviation, views
+        self._guides = guides
         self._theme = theme
         self._tool: object = None
         self._run: tuple[int, np.ndarray, np.ndarray] = (-1, np.zeros((0, 3)), np.zeros(0))
@@ -104,6 +108,7 @@ class ViewportPane(QWidget):
         player.moved.connect(self._move_tool)
         player.cut.connect(self._show_stock)
         deviation.arrived.connect(self._show_map)
+        guides.arrived.connect(lambda _: self.refresh())
 
     def use_theme(self, theme: Theme) -> None:
         """Draw in the colours of a theme."""
@@ -222,6 +227,11 @@ class ViewportPane(QWidget):
             ),
             lambda: self._draw_paths(session),
         )
+        self._once(
+            "guides",
+            (self._guide_lines, self._document.mesh),
+            lambda: self.scene.show_guides(self._guide_lines),
+        )
         self.legend.show_rows(self._legend(session))
         self._arrange()
         self.welcome.setVisible(not self._document.has_part and not self._document.is_busy)
@@ -324,6 +334,10 @@ class ViewportPane(QWidget):
         return self._player.is_on and self._player.timeline is not None
 
     @property
+    def _guide_lines(self) -> tuple[GuideCurve, ...]:
+        return () if self._plays or self._shows_map else self._guides.shown.lines
+
+    @property
     def _shows_map(self) -> bool:
         return self._deviation.is_on and self._deviation.shown is not None
 
@@ -371,6 +385,8 @@ class ViewportPane(QWidget):
                 legend.GAP,
                 *legend.paths(self.motions, any(leans(p.path) for p in session.paths)),
             ]
+        if self._guide_lines:
+            rows = [*rows, legend.GAP, *legend.guides(self._guide_lines)]
         return rows
 
     def _choose(self, selection: Selection) -> None:

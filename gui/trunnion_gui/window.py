@@ -15,6 +15,7 @@ from trunnion_gui.docks.layout import Docks
 from trunnion_gui.docks.playback import PlaybackBar
 from trunnion_gui.document import Document
 from trunnion_gui.families.views import Views
+from trunnion_gui.guides import GuideSource
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import colours, icons, theme
 from trunnion_gui.menus.bars import fill_menus, toolbar
@@ -67,6 +68,7 @@ class Window(QMainWindow):
             Player(self.document, self),
             DeviationSource(self.document, self),
         )
+        self.guides = GuideSource(self.document, self)
         self.views = Views(self.document)
         self.dialogs, self.handlers = FileDialogs(self.document, self), Handlers(self)
         add_general_commands(self)
@@ -74,7 +76,13 @@ class Window(QMainWindow):
             view.add_commands(self)
         add_playback_commands(self)
         self.viewport = ViewportPane(
-            self.document, self.registry, self.theme, self.player, self.deviation, self.views
+            self.document,
+            self.registry,
+            self.theme,
+            self.player,
+            self.deviation,
+            self.guides,
+            self.views,
         )
         self.setCentralWidget(self.viewport)
         for view in self.views:

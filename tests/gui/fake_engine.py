@@ -20,6 +20,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
+from trunnion.model.guides import GuideCurve, GuideKind, LinkRelation, OperationGuides
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.process import ProcessTree
@@ -277,6 +278,22 @@ class FakeEngine:
 
     def moment(self, key, position, seconds=np.inf, progress=NO_PROGRESS):
         return self._playback.towards(position, seconds, progress)
+
+    def guides(self, session, id, progress=NO_PROGRESS):
+        """Return the loop round the floor of the operation's pocket; of others why there is none."""
+        operation = session.process.operation(id)
+        name, _, number = operation.feature.rpartition("-")
+        if name != "pocket":
+            return OperationGuides(operation=id, refused=f"{id}: nothing leads it")
+        x0, y0, x1, y1 = POCKETS[int(number) - 1]
+        ring = [(x0, y0, FLOOR), (x1, y0, FLOOR), (x1, y1, FLOOR), (x0, y1, FLOOR)]
+        line = GuideCurve(
+            kind=GuideKind.WALL,
+            points=np.array([*ring, ring[0]], float),
+            corners=np.array(ring, float),
+            relations=(LinkRelation.TO,) * 4,
+        )
+        return OperationGuides(operation=id, lines=(line,))
 
     def deviation_map(self, session, progress=NO_PROGRESS):
         from trunnion.report.deviation import deviation_map

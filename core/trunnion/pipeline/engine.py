@@ -15,6 +15,7 @@ from trunnion.geometry.kernels.compiling import compiling
 from trunnion.geometry.mesh import Mesh
 from trunnion.memory import trim_memory
 from trunnion.model.fixture import Fixture
+from trunnion.model.guides import OperationGuides
 from trunnion.model.playback import Moment, Timeline
 from trunnion.model.repair import words_of
 from trunnion.model.session import Session
@@ -35,6 +36,7 @@ from trunnion.verify.settings import ProofSettings
 
 if TYPE_CHECKING:
     from trunnion.part.read.part_file import PartReading
+    from trunnion.pipeline.guides import PlanGuides
     from trunnion.pipeline.proof.playback import Playback
     from trunnion.report.deviation import DeviationMap
 
@@ -57,6 +59,7 @@ class Engine:
         self._contexts: Contexts | None = None
         self._file: tuple[bytes, str] = (b"", "")
         self._playback: Playback | None = None
+        self._guides: PlanGuides | None = None
 
     def open(
         self,
@@ -305,6 +308,17 @@ class Engine:
         progress = progress.afresh()
         with compiling(progress):
             return self._playback.towards(position, seconds, progress)
+
+    def guides(
+        self, session: Session, id: str, progress: Progress = NO_PROGRESS
+    ) -> OperationGuides:
+        """Return the guide lines and guide faces of an operation; raise `BadCall` where the plan has none of that id."""
+        from trunnion.pipeline.guides import PlanGuides, digest_of
+
+        progress = progress.afresh()
+        if self._guides is None or self._guides.digest != digest_of(session):
+            self._guides = PlanGuides(session, self.context_of(session, progress))
+        return self._guides.of(id, progress)
 
     def deviation_map(self, session: Session, progress: Progress = NO_PROGRESS) -> DeviationMap:
         """Return the deviation of the finished part as triangles to be drawn; raise `BadCall` before a proof."""

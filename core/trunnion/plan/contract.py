@@ -21,12 +21,14 @@ from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
 from trunnion.model.feature import Recognition
 from trunnion.model.fixture import Fixture
+from trunnion.model.guides import GuideCurve
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene, LeaningCutQuery, RemainingStockQuery
+from trunnion.plan.plane_guides import ToWorld
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.fixtures import PlanFixture, off_fixtures
 from trunnion.plan.prismatic.keep_out import off_boxes
@@ -147,6 +149,14 @@ class Drive(Protocol):
     @property
     def is_empty(self) -> bool:
         """Whether an operation that it drives has nothing to cut."""
+
+
+@runtime_checkable
+class GuideDrive(Protocol):
+    """Drive geometry of a class in which lines lead the passes, not faces alone."""
+
+    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+        """Return the lines in the part's coordinates; `to_world` takes points (n, 3) of the drive's frame there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

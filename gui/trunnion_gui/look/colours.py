@@ -96,6 +96,11 @@ def axis_colour() -> str:
     return _palette()["motions"][AXIS]
 
 
+def guide_colours() -> dict[str, str]:
+    """Return the colours of guide lines by kind, and of the places where their elements meet by how."""
+    return _palette()["guides"]
+
+
 def tool_colours() -> dict[str, str]:
     """Return the colours of cutter, shank and holder, and of the tip's path by feed and by rapid."""
     return _palette()["tool"]

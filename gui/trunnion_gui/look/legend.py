@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from trunnion.model.feature import Recognition
+from trunnion.model.guides import GuideCurve
 from trunnion_gui.families.contract import LegendRow
 from trunnion_gui.families.views import Views
 from trunnion_gui.i18n import tr
@@ -12,6 +14,7 @@ from trunnion_gui.look.colours import (
     Theme,
     axis_colour,
     feature_colours,
+    guide_colours,
     kind_colour,
     motions,
     stock_colours,
@@ -43,6 +46,33 @@ def paths(shown: Sequence[str], any_leans: bool) -> list[LegendRow]:
     """Return the rows of the kinds of motion that are shown; of the strokes along the tool, where any leans."""
     rows = [(motions()[m], sentence(tr(m)), "") for m in shown]
     return [*rows, (axis_colour(), tr("Tool axis"), "")] if any_leans and "cut" in shown else rows
+
+
+def guides(lines: Sequence[GuideCurve]) -> list[LegendRow]:
+    """Return the rows of the kinds of guide lines and corners that are shown, with their number."""
+    kinds = Counter(line.kind.value for line in lines)
+    relations = Counter(r.value for line in lines for r in line.relations)
+    colour = guide_colours()
+    return [
+        (colour[name], tr(words), str(count[name]))
+        for count, known in ((kinds, _GUIDES), (relations, _RELATIONS))
+        for name, words in known.items()
+        if count[name]
+    ]
+
+
+_GUIDES = {
+    "wall": "Guide line",
+    "foot": "Foot of a wall beside",
+    "area": "Rim of an area",
+    "axis": "Axis",
+    "contour": "Contour",
+}
+_RELATIONS = {
+    "TO": "Comes to the next wall",
+    "PAST": "Goes past the end",
+    "TANTO": "Goes on tangentially",
+}
 
 
 def playing(theme: Theme) -> list[LegendRow]:

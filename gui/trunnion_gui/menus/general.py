@@ -259,6 +259,13 @@ def add_general_commands(window: WindowAccess) -> None:
     for name, text, keys, on in _LAYERS:
         switch(name, text, show_layer(name), keys, checked=on)
     switch(
+        "guides",
+        "Guide lines",
+        window.guides.switch,
+        "G",
+        "Show what leads the selected operation",
+    )
+    switch(
         "section",
         "Section",
         lambda on: window.viewport.show_section(on),

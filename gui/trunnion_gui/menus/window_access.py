@@ -9,6 +9,7 @@ from trunnion_gui.arrangement import Arrangement
 from trunnion_gui.deviation import DeviationSource
 from trunnion_gui.dialogs import FileDialogs
 from trunnion_gui.document import Document
+from trunnion_gui.guides import GuideSource
 from trunnion_gui.look.colours import Theme
 from trunnion_gui.menus.handlers import Handlers
 from trunnion_gui.playback.player import Player
@@ -23,6 +24,7 @@ class WindowAccess(Protocol):
     registry: Registry
     player: Player
     deviation: DeviationSource
+    guides: GuideSource
     viewport: ViewportPane
     finder: Finder
     dialogs: FileDialogs

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Blank
+from trunnion.model.guides import GuideCurve
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.playback import Moment
 from trunnion.model.setup import Setup
@@ -24,6 +25,7 @@ from trunnion_gui.pieces import PieceExecution
 from trunnion_gui.viewport.layers.blank import draw_blank
 from trunnion_gui.viewport.layers.cut import draw_cut
 from trunnion_gui.viewport.layers.deviation import DeviationLayer
+from trunnion_gui.viewport.layers.guides import draw_guides
 from trunnion_gui.viewport.layers.label import draw_label, draw_names
 from trunnion_gui.viewport.layers.part import PartLayer
 from trunnion_gui.viewport.layers.paths import PathLayer
@@ -226,6 +228,11 @@ class ViewportScene(QWidget):
         self, paths: Sequence[tuple[Toolpath, Frame]], motions: Sequence[str]
     ) -> Iterator[None]:
         yield from self._paths.draw(paths, motions, self._size())
+        self.view.render()
+
+    def show_guides(self, lines: Sequence[GuideCurve]) -> None:
+        """Show guide lines in the part's coordinates, or none."""
+        draw_guides(self.view, lines)
         self.view.render()
 
     def show_map(self, shown: DrawnMap | None) -> None:

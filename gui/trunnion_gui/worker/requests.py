@@ -201,6 +201,12 @@ def _deviation(engine: Any, progress: Progress, _send_event: SendEvent, session:
     return drawn_map(engine.deviation_map(session, progress))
 
 
+def _guides(
+    engine: Any, progress: Progress, _send_event: SendEvent, session: Session, id: str
+) -> Any:
+    return engine.guides(session, id, progress)
+
+
 def _settings(
     engine: Any, _progress: Progress, _send_event: SendEvent
 ) -> dict[str, tuple[SettingsGroup, ...]]:
@@ -243,6 +249,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "playback": _playback,
     "moment": _moment,
     "deviation": _deviation,
+    "guides": _guides,
 }
 
 

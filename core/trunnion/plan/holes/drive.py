@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from trunnion.findings import Finding, Refused, error, face_tags, warning
 from trunnion.geometry.frame import Frame
 from trunnion.model.feature import Feature, Recognition
+from trunnion.model.guides import GuideCurve, GuideKind
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.holes.hole import Countersink, HoleShape, PlannedHole, hole_in, nearer_half
+from trunnion.plan.plane_guides import ToWorld, line_along
 from trunnion.plan.settings import HALVES
 from trunnion.plan.setups.frames import cutting_setup
 from trunnion.plan.tool_choice import Candidates
@@ -51,6 +55,18 @@ class HoleDrive:
     def is_empty(self) -> bool:
         """Whether there is no hole to cut."""
         return not self.holes
+
+    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+        """Return the holes' axes, as deep as their full diameters."""
+        return tuple(
+            line_along(
+                GuideKind.AXIS,
+                np.array([[h.x, h.y, h.top], [h.x, h.y, h.bottom]]),
+                h.faces,
+                to_world,
+            )
+            for h in self.holes
+        )
 
 
 def holes_driven(

@@ -14,8 +14,10 @@ from trunnion.findings import Refused
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Feature
+from trunnion.model.guides import GuideCurve, GuideKind
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.plan.plane_guides import ToWorld, area_lines, wall_line
 from trunnion.plan.prismatic.regions import (
     Band,
     SetupSpace,
@@ -123,6 +125,26 @@ class PlaneDrive:
     def is_empty(self) -> bool:
         """Whether no level has material that is wanted away."""
         return not any(level.wanted for level in self.levels)
+
+    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+        """Return the walls' guide lines at their feet, those of walls beside, and the rims of floors; without walls and floors those of
+        what is cleared in each level."""
+        walls = (
+            *(wall_line(GuideKind.WALL, w.curve, w.bottom, w.faces, to_world) for w in self.walls),
+            *(wall_line(GuideKind.FOOT, w.curve, w.bottom, w.faces, to_world) for w in self.beside),
+        )
+        floors = [
+            line
+            for f in self.floors
+            for line in area_lines(f.region, f.z, (f.face,) if f.face else (), to_world)
+        ]
+        if walls or floors:
+            return (*walls, *floors)
+        return tuple(
+            line
+            for level in self.levels
+            for line in area_lines(level.wanted, level.bottom, (), to_world)
+        )
 
 
 def foot_clearance(fillet: float, corner_radius: float, above: float) -> float:

@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
 from trunnion.geometry.arrays import Floats, floats
+from trunnion.model.guides import GuideCurve, GuideKind
+from trunnion.plan.plane_guides import ToWorld, line_along
 
 LEAST_AREA = 0.05
 """mm2 of the meridian: less is not worth a pass."""
@@ -30,6 +33,12 @@ class RevolvedDrive:
     def is_empty(self) -> bool:
         """Whether there is nothing to turn."""
         return self.to_cut <= LEAST_AREA
+
+    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+        """Return the outline that must stand, in the half plane of x."""
+        r, z = np.vstack([self.part, self.part[:1]]).T
+        points = np.column_stack([r, np.zeros(len(r)), z])
+        return (line_along(GuideKind.CONTOUR, points, (), to_world),)
 
     @cached_property
     def part_area(self) -> BaseGeometry:

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from trunnion.geometry.arrays import Floats
 from trunnion.geometry.development import Development
+from trunnion.model.guides import GuideCurve, GuideKind
+from trunnion.plan.plane_guides import ToWorld, line_along
+
+ARC = math.radians(2.0)
+"""Angle between two points of a guide line about the axis at most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,3 +38,17 @@ class GapDrive:
     def is_empty(self) -> bool:
         """Whether there is no gap to turn."""
         return not self.passes
+
+    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+        """Return the arcs on the ground in the gaps of all passes; their places don't depend on the frame."""
+        return tuple(
+            line_along(GuideKind.CONTOUR, self._arc(one, begin, end), (), np.asarray)
+            for one in self.passes
+            for begin, end in one.gaps
+        )
+
+    def _arc(self, one: GapPass, begin: float, end: float) -> Floats:
+        """Return points (n, 3) on the ground from one angle to another, in the part's coordinates."""
+        count = max(2, math.ceil((end - begin) / ARC) + 1)
+        turns = np.linspace(begin, end, count)
+        return self.development.points_about_axis(np.full(count, one.along), turns, np.zeros(count))

@@ -1,0 +1,72 @@
+"""Guide lines: the curves that passes of an operation are led by, or that bound what they clear, and how one element of them follows the
+other.
+
+Source: the drive geometry paper (guide lines and guide faces, move direction and link relations), in the words of APT (ISO 4342): the tool
+comes TO a face that it can't pass, goes PAST one that ends before the next begins, or meets the next TANTO; from there it goes left
+(GOLFT), right (GORGT) or straight on (GOFWD).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from trunnion.geometry.arrays import Floats, floats
+
+
+class GuideKind(StrEnum):
+    """What a guide line is to an operation: the wall that a pass goes along, the foot of one beside that it stays off, the rim of an area
+    that is cleared or finished, the axis of a hole, the contour of turning."""
+
+    WALL = "wall"
+    FOOT = "foot"
+    AREA = "area"
+    AXIS = "axis"
+    CONTOUR = "contour"
+
+
+class LinkRelation(StrEnum):
+    """How a pass along one element of a guide line ends where the next begins."""
+
+    TO = "TO"
+    PAST = "PAST"
+    TANGENT = "TANTO"
+
+
+MOVES = {LinkRelation.TO: "GOLFT", LinkRelation.PAST: "GORGT", LinkRelation.TANGENT: "GOFWD"}
+"""APT's word for where the tool goes on: the part is on the right of a wall's guide line."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class GuideCurve:
+    """A guide line in the part's coordinates: `points` (n, 3) mm, the first again at the end where it is closed; `relations` say how its
+    elements follow each other, at places `corners` (k, 3). `faces` are the tags that are finished along it, where they are known."""
+
+    kind: GuideKind
+    points: Floats
+    corners: Floats
+    relations: tuple[LinkRelation, ...] = ()
+    faces: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", floats(self.points, (None, 3), "guide line"))
+        object.__setattr__(
+            self, "corners", floats(self.corners, (len(self.relations), 3), "corners")
+        )
+
+    @property
+    def length(self) -> float:
+        """Length in mm."""
+        return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class OperationGuides:
+    """The guide lines of an operation, and the tags of its guide faces; `refused` says why there are none, where that is so."""
+
+    operation: str
+    lines: tuple[GuideCurve, ...] = ()
+    faces: tuple[int, ...] = ()
+    refused: str = ""
