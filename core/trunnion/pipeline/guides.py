@@ -73,5 +73,11 @@ class PlanGuides:
 def digest_of(session: Session) -> str:
     """Return a digest of all that guides depend on."""
     return digest(
-        session.process, session.recognition, session.blank, session.fixtures, session.choices
+        session.part.digest if session.part is not None else "",
+        session.cuts,
+        session.process,
+        session.recognition,
+        session.blank,
+        session.fixtures,
+        session.choices,
     )

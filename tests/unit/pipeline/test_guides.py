@@ -10,6 +10,7 @@ import pytest
 from trunnion.findings import BadCall
 from trunnion.model.guides import GuideKind
 from trunnion.pipeline import Engine
+from trunnion.pipeline.guides import digest_of
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +51,12 @@ def test_an_operation_that_is_not_there_is_told(routed) -> None:
         engine.guides(session, "wall-99")
     with pytest.raises(BadCall, match="generate the route"):
         engine.guides(replace(session, process=None), "wall-99")
+
+
+def test_guides_of_another_part_are_others_though_its_plan_were_the_same(routed) -> None:
+    _, session = routed
+    other = replace(session, part=replace(session.part, digest="another file"))
+    assert digest_of(other) != digest_of(session) == digest_of(replace(session))
 
 
 def test_a_feature_that_is_gone_is_told_in_its_guides(routed) -> None:
