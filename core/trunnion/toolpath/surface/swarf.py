@@ -27,6 +27,7 @@ from trunnion.plan.freeform.swarf.level_sections import level_sections
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 from trunnion.toolpath.contact_passes.flank.flank_passes import flank_passes, lifts, stretches
+from trunnion.toolpath.contact_passes.flank.flank_stock import FlankStock
 from trunnion.toolpath.contact_passes.flank.flank_trimming import passes_off_stock
 from trunnion.toolpath.contact_passes.linking.link_passes import extended_in_order, linked_in_order
 from trunnion.toolpath.contact_passes.linking.parameters import LinkParameters
@@ -43,6 +44,9 @@ from trunnion.units import trimmed
 
 SMALLEST_SHARE = 0.002
 """Less of the guide lines than this may be left without a word."""
+LEAST_SHARE = 0.5
+"""Of passes whose tool has to stay clear of stock above the flutes: where less of their length does, the cutter is too short, not corners
+too tight. They stay whole then: the proof finds the contact, and how much longer a cutter has to be."""
 SHORTEST = 0.25
 """Of the cutter's diameter: a shorter line is none. Where faces run on past what is finished of them, scraps of these stay."""
 LOWEST = 3.0
@@ -135,6 +139,9 @@ def swarf(
         extended, tool, stock, drive.leaning_cuts, drive.frame, progress.part(0.55, 0.65)
     )
     share = _length(passes) / max(_length(extended), tolerance.COINCIDENT)
+    if share < LEAST_SHARE:
+        passes, share = tuple(extended), 1.0
+        beside = FlankStock.after(passes, tool, stock, drive.leaning_cuts, drive.frame)
     findings = _remaining_findings(share * found.done, found.whole, drive, tool)
     if not passes:
         return Planned(findings=findings)

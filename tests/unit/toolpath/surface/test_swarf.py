@@ -189,7 +189,22 @@ def test_swarf_milling_needs_rotary_axes() -> None:
         swarf(drive, flat(10.0)(), DATA, stock, setup, SwarfSettings())
 
 
-def test_feet_are_cut_where_an_earlier_cutter_has_made_way() -> None:
+def test_a_cutter_that_is_too_short_goes_all_the_way_and_the_proof_tells() -> None:
+    """Its holder would be in stock nearly everywhere: trimmed to nothing it would be as silent as it is useless."""
+    skin = funnel((5.0,) * 4, height=30.0)
+    drive, setup, stock = driven(skin, faces=(1, 2, 3, 4), top=30.0)
+    drive = replace(drive, query_for=lambda _: free)
+    short = bull(8.0, 1.0)(flute=15.0)
+    long = replace(short, neck_length=80.0, stickout=90.0, gauge_length=150.0)
+    found, expected = (
+        swarf(drive, tool, DATA, stock, setup, SwarfSettings()) for tool in (short, long)
+    )
+    cut, all_cut = (p.path.position[p.path.mark == Mark.CUT] for p in (found, expected))
+    assert not found.findings and np.array_equal(cut, all_cut)
+
+
+def test_feet_are_cut_where_an_earlier_cutter_has_made_way(monkeypatch) -> None:
+    monkeypatch.setattr("trunnion.toolpath.surface.swarf.LEAST_SHARE", 0.0)
     height = 20.0
     skin = funnel((5.0,) * 4, height=height)
     wide = replace(bull(8.0, 1.0)(flute=30.0), gauge_length=150.0, stickout=90.0, neck_length=80.0)

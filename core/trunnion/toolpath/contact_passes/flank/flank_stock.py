@@ -56,9 +56,15 @@ class FlankStock:
             self._cuts.add(*cut.poses_in(frame, STEP), cut.flutes(INSIDE), EARLIER)
 
     @staticmethod
-    def after(passes: Sequence[Pass], tool: Tool, stock: PlanningStock) -> FlankStock:
+    def after(
+        passes: Sequence[Pass],
+        tool: Tool,
+        stock: PlanningStock,
+        earlier: Iterable[LeaningCutQuery] = (),
+        frame: Frame = WORLD,
+    ) -> FlankStock:
         """Return the stock beside passes that may all be cut."""
-        found = FlankStock(passes, tool, stock)
+        found = FlankStock(passes, tool, stock, earlier, frame)
         for one in passes:
             found.add(one)
         return found
