@@ -37,14 +37,12 @@ def passes_off_stock(
     for one in progress.over(list(passes), "Looking for what stands in the way"):
         fine, own = _fine(one, tool)
         free = beside.is_free(fine.tip, fine.axis, np.full(len(fine), len(kept)))
-        for rows, closed in stretches(free, closed=one.closed):
+        for rows, _ in stretches(free, closed=one.closed):
             piece = one
             if len(rows) < len(fine):
                 ends = np.zeros(len(rows), dtype=bool)
                 ends[[0, -1]] = True
                 piece = fine.of(rows[own[rows] | ends])
-            elif not closed and one.closed:
-                piece = one.of(slice(None))
             kept.append(piece)
             beside.add(piece)
     return tuple(kept), beside
