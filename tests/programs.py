@@ -14,6 +14,7 @@ from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.fixture import Fixture
+from trunnion.model.guides import GuideChain, GuideKind, LinkRelation
 from trunnion.model.motion.program import Program, ProgramSection
 from trunnion.model.motion.toolpath import ACROSS, Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData, Operation, OperationPath
@@ -32,6 +33,17 @@ from trunnion.model.verdict import (
     Verdict,
 )
 
+GUIDES = (
+    GuideChain(
+        kind=GuideKind.WALL,
+        faces=(12, 13, 14),
+        on=(12, 13, 0),
+        relations=(LinkRelation.TO, LinkRelation.PAST),
+    ),
+    GuideChain(kind=GuideKind.WALL, closed=True, on=(15,), relations=(LinkRelation.TANGENT,)),
+    GuideChain(kind=GuideKind.AREA, closed=True, faces=(9,)),
+)
+"""Guide lines: an open one along two walls and on past a third face that is not known, one round a round wall, the rim of a floor."""
 HOLDER = Holder(name="HSK63-ER32", rows=((0.0, 20.0, 10.0, 25.0), (10.0, 25.0, 60.0, 31.5)))
 FLAT_16 = Tool(
     number=1,
@@ -430,7 +442,7 @@ def session() -> Session:
             findings=(info("rough.left", "a corner is left"),),
             key="k1",
         ),
-        OperationPath(operation="wall-01", path=WALL, key="k2"),
+        OperationPath(operation="wall-01", path=WALL, key="k2", guides=GUIDES),
     )
     posted = (
         PostedFile(suffix="S1.nc", dialect="linuxcnc", setup="S1", text="(A)\nN10 G0 X0\n" * 300),

@@ -14,13 +14,10 @@ from trunnion_gui.document import Document
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.colours import kind_colour, kind_label
-from trunnion_gui.look.words import sentence
+from trunnion_gui.look.words import faces_named, sentence
 from trunnion_gui.widgets.table import colour_icon
 from trunnion_gui.worker import face_requests
 from trunnion_gui.worker.requests import Work
-
-_MOST_NAMED = 3
-"""Faces that a label names at most."""
 
 
 class FaceEdits(QObject):
@@ -82,12 +79,12 @@ class FaceEdits(QObject):
 
     def add(self, id: str, tags: tuple[int, ...]) -> None:
         """Add faces to a feature."""
-        label = tr("Add face {faces} to {id}").format(faces=_faces(tags), id=id)
+        label = tr("Add face {faces} to {id}").format(faces=faces_named(tags), id=id)
         self._change(face_requests.add, label, id, tags)
 
     def take(self, id: str, tags: tuple[int, ...]) -> None:
         """Take faces from a feature."""
-        label = tr("Take face {faces} from {id}").format(faces=_faces(tags), id=id)
+        label = tr("Take face {faces} from {id}").format(faces=faces_named(tags), id=id)
         self._change(face_requests.take, label, id, tags)
 
     def merge(self, ids: tuple[str, ...]) -> None:
@@ -97,7 +94,7 @@ class FaceEdits(QObject):
     def make(self, kind: str, tags: tuple[int, ...]) -> None:
         """Make a new feature of faces."""
         label = tr("New {kind} of face {faces}").format(
-            kind=tr(kind_label(kind)), faces=_faces(tags)
+            kind=tr(kind_label(kind)), faces=faces_named(tags)
         )
         self._change(face_requests.make, label, kind, tags)
 
@@ -113,7 +110,3 @@ class FaceEdits(QObject):
     def _describable(self) -> list[Feature]:
         kinds = self._kinds()
         return [f for f in self._document.shown.recognition or () if f.kind in kinds]
-
-
-def _faces(tags: tuple[int, ...]) -> str:
-    return ", ".join(map(str, tags[:_MOST_NAMED])) + ("…" if len(tags) > _MOST_NAMED else "")

@@ -288,12 +288,12 @@ class ViewportPane(QWidget):
 
     def _open_menu(self, click: Click, at: QPoint) -> None:
         """Offer what can be done with the face that was clicked, or with all selected ones when it is among them."""
-        selected = self._document.selection.current
+        selected, operation = self._document.selection.current, self._operation()
         if not click.face or self._tool_on() is not None:
             return
         if not (selected.kind == "faces" and click.face in selected.faces):
             self._document.selection.select_face_alone(click.face)
-        menu = self._views.face_menu(self, self._document.selection.current.faces)
+        menu = self._views.face_menu(self, self._document.selection.current.faces, operation)
         menu.aboutToHide.connect(menu.deleteLater)
         if menu.actions():
             menu.popup(at)

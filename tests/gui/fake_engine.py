@@ -20,7 +20,7 @@ from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
 from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature, Recognition, TakenFor
-from trunnion.model.guides import GuideCurve, GuideKind, LinkRelation, OperationGuides
+from trunnion.model.guides import GuideChain, GuideCurve, GuideKind, LinkRelation, OperationGuides
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData, Operation, OperationPath
 from trunnion.model.process import ProcessTree
@@ -288,10 +288,11 @@ class FakeEngine:
         x0, y0, x1, y1 = POCKETS[int(number) - 1]
         ring = [(x0, y0, FLOOR), (x1, y0, FLOOR), (x1, y1, FLOOR), (x0, y1, FLOOR)]
         line = GuideCurve(
-            kind=GuideKind.WALL,
+            chain=GuideChain(
+                kind=GuideKind.WALL, closed=True, on=(0,) * 4, relations=(LinkRelation.TO,) * 4
+            ),
             points=np.array([*ring, ring[0]], float),
             corners=np.array(ring, float),
-            relations=(LinkRelation.TO,) * 4,
         )
         return OperationGuides(operation=id, lines=(line,))
 

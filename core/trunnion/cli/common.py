@@ -120,6 +120,20 @@ def pairs_of(words: Iterable[str], option: str) -> dict[str, str]:
     return pairs
 
 
+def tags_in(words: str) -> list[int]:
+    """Return the face numbers of an option's value, which commas part; none where one of them is no number."""
+    given = listed(words)
+    return [int(w) for w in given] if all(w.isdecimal() for w in given) else []
+
+
+def face_tags_of(words: str, option: str) -> list[int]:
+    """Return the face numbers that an option gives, none where it is not given; raise `BadCall` for other words."""
+    tags = tags_in(words)
+    if words and not tags:
+        raise BadCall(f"{option} wants face numbers with commas, as in 12,13, not {words}")
+    return tags
+
+
 def progress_of(options: argparse.Namespace) -> Progress:
     """Return progress that shows itself on a terminal's standard error, one line rewritten, and nothing elsewhere."""
     if options.quiet or not sys.stderr.isatty():

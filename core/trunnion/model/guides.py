@@ -8,6 +8,7 @@ comes TO a face that it can't pass, goes PAST one that ends before the next begi
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -39,22 +40,58 @@ MOVES = {LinkRelation.TO: "GOLFT", LinkRelation.PAST: "GORGT", LinkRelation.TANG
 """APT's word for where the tool goes on: the part is on the right of a wall's guide line."""
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class GuideCurve:
-    """A guide line in the part's coordinates: `points` (n, 3) mm, the first again at the end where it is closed; `relations` say how its
-    elements follow each other, at places `corners` (k, 3). `faces` are the tags that are finished along it, where they are known."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GuideChain:
+    """A guide line by faces alone. `on` has the tag of the face that each of its elements lies on, 0 where none is known; `relations` say
+    how each ends where the next begins, that of the last one of a `closed` line where the first does. `faces` are the tags that are
+    finished along it, where they are known."""
 
     kind: GuideKind
+    closed: bool = False
+    faces: tuple[int, ...] = ()
+    on: tuple[int, ...] = ()
+    relations: tuple[LinkRelation, ...] = ()
+
+    def __post_init__(self) -> None:
+        links = len(self.on) if self.closed else max(len(self.on) - 1, 0)
+        if len(self.relations) != links:
+            raise ValueError(
+                f"guide chain: {len(self.on)} elements have {links} links, not {len(self.relations)}"
+            )
+
+    def elements(self) -> Iterator[tuple[str, int, LinkRelation | None, int]]:
+        """Yield for each element APT's word for how the tool goes on to it, its face, and how it ends at which face (None and 0 at an open
+        end)."""
+        n = len(self.on)
+        for k, face in enumerate(self.on):
+            came = self.relations[k - 1] if k or self.closed else LinkRelation.TANGENT
+            link = self.relations[k] if k < len(self.relations) else None
+            yield MOVES[came], face, link, self.on[(k + 1) % n] if link is not None else 0
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class GuideCurve:
+    """A guide line in the part's coordinates: `points` (n, 3) mm, the first again at the end where its `chain` is closed; elements of the
+    chain meet at places `corners` (k, 3)."""
+
+    chain: GuideChain
     points: Floats
     corners: Floats
-    relations: tuple[LinkRelation, ...] = ()
-    faces: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points", floats(self.points, (None, 3), "guide line"))
-        object.__setattr__(
-            self, "corners", floats(self.corners, (len(self.relations), 3), "corners")
-        )
+        places = (len(self.chain.relations), 3)
+        object.__setattr__(self, "corners", floats(self.corners, places, "corners"))
+
+    @property
+    def kind(self) -> GuideKind:
+        """What it is to the operation."""
+        return self.chain.kind
+
+    @property
+    def relations(self) -> tuple[LinkRelation, ...]:
+        """How its elements follow each other, at its corners."""
+        return self.chain.relations
 
     @property
     def length(self) -> float:

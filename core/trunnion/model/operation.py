@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from trunnion.findings import Finding
+from trunnion.model.guides import GuideChain
 from trunnion.model.keep_out import KeepOutBox
 from trunnion.model.motion.toolpath import EMPTY, Toolpath
 from trunnion.model.spindle import FeedMode, SpindleMode, limited_turns, per_revolution
@@ -114,7 +115,7 @@ class Operation:
     (a tool that leans knows none); `others` the ids of further features that it machines with the same tool and data, as of equal holes.
     What a plan can be taught by: `planned_tool` names the cutter that the planner took where a person or a plan of the library has another
     one in its place, `own_choices` are the keys of the choices that these gave; `taught_data` marks cutting data of such a plan.
-    `copy_of`: the planned operation that a person copied it from; `moved` marks that a person gave it its place.
+    `copy_of`: the planned operation that a person copied it from; `moved` marks that a person gave it its place, `own_faces` its faces.
     """
 
     id: str
@@ -139,6 +140,7 @@ class Operation:
     taught_data: bool = added(False, written=False)
     copy_of: str = added("", written=False)
     moved: bool = added(False, written=False)
+    own_faces: bool = added(False, written=False)
 
     @property
     def keeps_data(self) -> bool:
@@ -182,7 +184,7 @@ class OperationPath:
     """The toolpath of one operation, the areas it leaves (in words) and the digest of what it was made from.
 
     `stock_box` is where the stock was looked at for it, mm: least x and y, greatest x and y, or nothing for all of it; `stock_key` the
-    digest of the stock there.
+    digest of the stock there. `guides` are the guide lines that led it, by the faces that they are on.
 
     `power` kW, `rate` cm3/min and `chip` mm are the highest that its own motions come to, by what they take off the stock as it is planned:
     0 where that isn't known, of a tool that leans.
@@ -197,3 +199,4 @@ class OperationPath:
     chip: float = added(0.0)
     stock_box: tuple[float, ...] = added((), written=False)
     stock_key: str = added("", written=False)
+    guides: tuple[GuideChain, ...] = added((), written=False)

@@ -16,6 +16,7 @@ from trunnion.geometry.mesh import Mesh
 from trunnion.memory import trim_memory
 from trunnion.model.fixture import Fixture
 from trunnion.model.guides import OperationGuides
+from trunnion.model.operation import Operation
 from trunnion.model.playback import Moment, Timeline
 from trunnion.model.repair import words_of
 from trunnion.model.session import Session
@@ -313,12 +314,22 @@ class Engine:
         self, session: Session, id: str, progress: Progress = NO_PROGRESS
     ) -> OperationGuides:
         """Return the guide lines and guide faces of an operation; raise `BadCall` where the plan has none of that id."""
+        progress = progress.afresh()
+        return self._plan_guides(session, progress).of(id, progress)
+
+    def operation_guides(
+        self, session: Session, operation: Operation, progress: Progress = NO_PROGRESS
+    ) -> OperationGuides:
+        """Return the guide lines and guide faces of an operation as it is given, in the place of the plan's of its id."""
+        progress = progress.afresh()
+        return self._plan_guides(session, progress).of_operation(operation, progress)
+
+    def _plan_guides(self, session: Session, progress: Progress) -> PlanGuides:
         from trunnion.pipeline.guides import PlanGuides, digest_of
 
-        progress = progress.afresh()
         if self._guides is None or self._guides.digest != digest_of(session):
             self._guides = PlanGuides(session, self.context_of(session, progress))
-        return self._guides.of(id, progress)
+        return self._guides
 
     def deviation_map(self, session: Session, progress: Progress = NO_PROGRESS) -> DeviationMap:
         """Return the deviation of the finished part as triangles to be drawn; raise `BadCall` before a proof."""

@@ -12,6 +12,7 @@ from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.planning.scene import SessionContext, SetupScene
 from trunnion.plan.contract import DriveNeeds, GuideDrive, planner_for
+from trunnion.plan.plane_guides import guide_space
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import digest
@@ -36,6 +37,12 @@ class PlanGuides:
         operation = next((o for o in session.process.operations if o.id == id), None)
         if operation is None:
             raise BadCall(f"the plan has no operation {id}")
+        return self.of_operation(operation, progress)
+
+    def of_operation(self, operation: Operation, progress: Progress) -> OperationGuides:
+        """Return the guide lines and guide faces of an operation as it is given; the plan may have another one of its id."""
+        session, id = self._session, operation.id
+        assert session.recognition is not None
         drive = registry.get(STRATEGIES, operation.strategy).drive
         if not issubclass(drive, GuideDrive):
             return OperationGuides(operation=id, faces=operation.faces)
@@ -44,10 +51,8 @@ class PlanGuides:
             driven = planner.drive(
                 operation, DriveNeeds(drive=drive), self._scene(operation), progress
             )
-            rolling = driven.rolling
-            to_world = rolling.development.to_world if rolling else driven.setup.frame.to_world
             made: Any = driven.drive
-            lines = made.guides(to_world)
+            lines = made.guides(guide_space(self._parts.part, driven.to_world))
         except Refused as reason:
             return OperationGuides(operation=id, faces=operation.faces, refused=str(reason))
         return OperationGuides(operation=id, lines=lines, faces=operation.faces)

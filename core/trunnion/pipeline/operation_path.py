@@ -10,12 +10,21 @@ import numpy as np
 from trunnion import registry
 from trunnion.findings import Finding
 from trunnion.geometry.frame import Frame
+from trunnion.model.guides import GuideChain
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.session import Session
 from trunnion.pipeline.planning.scene import SetupScene
 from trunnion.pipeline.turning import empty_path
-from trunnion.plan.contract import DriveNeeds, LazyDrive, OperationDrive, Planner, ToolAxis
+from trunnion.plan.contract import (
+    DriveNeeds,
+    GuideDrive,
+    LazyDrive,
+    OperationDrive,
+    Planner,
+    ToolAxis,
+)
+from trunnion.plan.plane_guides import MeshSource, guide_space
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.settings import checked, choose, digest
@@ -29,11 +38,12 @@ from trunnion.toolpath.stock.stock_reads import StockBox
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CopyResult:
-    """What was made of a job before its turn: the strategy's path, None where there is nothing to cut, and the findings of its drive, which
-    need not be made again."""
+    """What was made of a job before its turn: the strategy's path, None where there is nothing to cut, the findings of its drive and the
+    guide lines that led it, which need not be made again."""
 
     planned: Planned | None
     findings: tuple[Finding, ...]
+    guides: tuple[GuideChain, ...] = ()
 
     @property
     def is_empty(self) -> bool:
@@ -91,7 +101,11 @@ class PathJob:
         """Return the path on the stock of the moment, with all that others need of the drive; raise `Refused` where there is none."""
         findings = self.driven.findings
         planned = None if self.is_empty else self.planned(progress)
-        return CopyResult(planned=planned, findings=findings)
+        return CopyResult(
+            planned=planned,
+            findings=findings,
+            guides=chains_of(self.driven, self.scene.context.part),
+        )
 
     def takes(self, other: PathJob, made: CopyResult) -> bool:
         """Return whether this job would come to what was made of another one, of the same operation, before the stock was this one."""
@@ -156,6 +170,7 @@ class PathJob:
                 key=self._key(),
                 stock_box=planned.stock_box,
                 stock_key=self.stock.digest_in(planned.stock_box),
+                guides=chains_of(driven, scene.context.part),
             )
         )
 
@@ -213,6 +228,17 @@ class PathJob:
         if not self.driven.findings:
             return made
         return replace(made, findings=(*self.driven.findings, *made.findings))
+
+
+def chains_of(driven: OperationDrive, part: MeshSource) -> tuple[GuideChain, ...]:
+    """Return the guide lines of a drive by the faces that they are on; those that are on none say nothing."""
+    drive: Any = driven.drive
+    if isinstance(drive, CopyResult):
+        return drive.guides
+    if not isinstance(drive, GuideDrive):
+        return ()
+    lines = drive.guides(guide_space(part, driven.to_world))
+    return tuple(g.chain for g in lines if any(g.chain.on) or g.chain.faces)
 
 
 def turned(path: Toolpath, frame: Frame, other: Frame) -> Toolpath:

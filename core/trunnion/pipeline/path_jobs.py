@@ -25,6 +25,7 @@ from trunnion.pipeline.operation_path import CopyResult, PathJob
 from trunnion.pipeline.planning.scene import SetupScene
 from trunnion.pipeline.turning import refused, turned_path
 from trunnion.plan.contract import Planner, ToolAxis
+from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.turning.drive import RevolvedDrive
 from trunnion.progress import LOOK_S, Progress
 from trunnion.registry import STRATEGIES
@@ -236,6 +237,10 @@ class PathJobs:
         begun = self._prepared(operation, progress, now=False)
         if begun.prepared is None:
             return begun
+        if registry.get(STRATEGIES, operation.strategy).drive is PlaneDrive:
+            # All copies look for the faces of their guide lines in the same triangles: they are made once, before them.
+            part = self._scene.context.part
+            part.mesh(part.view_chord)
         self._idle()
         copy = Fork(partial(_made_ahead, self._scene, begun.prepared))
         self._copies.append(copy)

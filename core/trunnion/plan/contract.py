@@ -28,9 +28,10 @@ from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene, LeaningCutQuery, RemainingStockQuery
-from trunnion.plan.plane_guides import ToWorld
+from trunnion.plan.plane_guides import GuideSpace, guide_space
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.fixtures import PlanFixture, off_fixtures
+from trunnion.plan.prismatic.guide_faces import on_guide_faces
 from trunnion.plan.prismatic.keep_out import off_boxes
 from trunnion.progress import Progress
 from trunnion.registry import PLANNERS
@@ -155,8 +156,8 @@ class Drive(Protocol):
 class GuideDrive(Protocol):
     """Drive geometry of a class in which lines lead the passes, not faces alone."""
 
-    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
-        """Return the lines in the part's coordinates; `to_world` takes points (n, 3) of the drive's frame there."""
+    def guides(self, space: GuideSpace) -> tuple[GuideCurve, ...]:
+        """Return the lines in the part's coordinates."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -233,6 +234,12 @@ class OperationDrive:
             rolling=rolling,
             cell=cell,
         )
+
+    def to_world(self, points: Floats) -> Floats:
+        """Return points (n, 3) of the drive's frame in the part's coordinates."""
+        if self.rolling is not None:
+            return self.rolling.development.to_world(points)
+        return self.setup.frame.to_world(points)
 
     @property
     def drive(self) -> Drive:
@@ -314,8 +321,9 @@ def driven_by(
 ) -> OperationDrive:
     """Return the drive of an operation by the maker for the class that its strategy needs; raise `Refused` where there is none.
 
-    What fixtures, or the areas that it avoids, keep its cutter from is cut off a plane drive; makers of other drives see to that
-    themselves. Links know those areas by the drive's setup.
+    The faces that a person gave it lead a plane drive; makers of other drives take the operation's. What fixtures, or the areas that it
+    avoids, keep its cutter from is cut off a plane drive; makers of other drives see to that themselves. Links know those areas by the
+    drive's setup.
     """
     if needs.drive not in makers:
         raise Refused(
@@ -323,9 +331,23 @@ def driven_by(
             "choose another strategy"
         )
     driven = makers[needs.drive](operation, needs, scene, progress)
+    if needs.drive is PlaneDrive and operation.own_faces:
+        driven = _on_guide_faces(driven, operation, scene)
     if needs.drive is PlaneDrive and scene.fixtures:
         driven = _off_fixtures(driven, operation, scene)
     return driven if needs.leans or not operation.avoid else _off_boxes(driven, operation, needs)
+
+
+def _on_guide_faces(driven: OperationDrive, operation: Operation, scene: Scene) -> OperationDrive:
+    plane = driven.drive
+    assert isinstance(plane, PlaneDrive)
+    space = guide_space(scene.context.part, driven.to_world)
+    drive = on_guide_faces(plane, operation.id, operation.faces, space)
+    return replace(
+        driven,
+        lazy=LazyDrive.of(drive, driven.findings),
+        identity=(driven.identity, drive),
+    )
 
 
 def _off_fixtures(driven: OperationDrive, operation: Operation, scene: Scene) -> OperationDrive:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from lxml import etree
 
 from trunnion.findings import BadCall, BadInput
-from trunnion.model.operation import Operation
+from trunnion.model.guides import GuideChain
+from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import PartInfo, Session
 from trunnion.model.tool import AnyTool, Tool, TurningTool
@@ -32,11 +34,11 @@ def write_process(session: Session, path: str | Path) -> None:
     """Write the process tree of a session as XML that fits the schema; raise `BadCall` while there is none."""
     if session.part is None or session.process is None:
         raise BadCall("no operations yet: generate the route first")
-    write_bytes(path, process_xml(session.process, session.part))
+    write_bytes(path, process_xml(session.process, session.part, session.paths))
 
 
-def process_xml(process: ProcessTree, part: PartInfo) -> bytes:
-    """Return the XML of a process tree made for a part."""
+def process_xml(process: ProcessTree, part: PartInfo, paths: Sequence[OperationPath] = ()) -> bytes:
+    """Return the XML of a process tree made for a part, with the guide lines of the toolpaths that are there."""
     root = etree.Element(
         "process-tree", version=str(FORMAT), plan=process.plan, material=process.material
     )
@@ -49,8 +51,9 @@ def process_xml(process: ProcessTree, part: PartInfo) -> bytes:
         _add_tool(root, rotating)
     for turning in (t for t in tools if isinstance(t, TurningTool)):
         _add_turning_tool(root, turning)
+    guides = {path.operation: path.guides for path in paths}
     for operation in process.operations:
-        _add_operation(root, operation)
+        _add_operation(root, operation, guides.get(operation.id, ()))
     for id in process.removed:
         add(root, "removed", operation=id)
     add_findings(root, process.findings)
@@ -89,7 +92,7 @@ def _add_turning_tool(root: Any, tool: TurningTool) -> None:
     etree.SubElement(element, "insert", attributes(tool.insert))
 
 
-def _add_operation(root: Any, operation: Operation) -> None:
+def _add_operation(root: Any, operation: Operation, guides: tuple[GuideChain, ...]) -> None:
     element = etree.SubElement(
         root, "operation", {**attributes(operation), "tool": str(operation.tool.number)}
     )
@@ -98,6 +101,8 @@ def _add_operation(root: Any, operation: Operation) -> None:
         add(cutting, "rule", rule)
     for tag in operation.faces:
         add(element, "face", tag=str(tag))
+    for chain in guides:
+        _add_guide(element, chain)
     for other in operation.others:
         add(element, "feature", id=other)
     for before in operation.after:
@@ -111,3 +116,19 @@ def _add_operation(root: Any, operation: Operation) -> None:
     for box in operation.avoid:
         (x0, y0), (x1, y1) = (tuple(text_of(float(v)) for v in end) for end in (box.low, box.high))
         add(element, "avoid", x0=x0, y0=y0, x1=x1, y1=y1, top=text_of(float(box.top)))
+
+
+def _add_guide(parent: Any, chain: GuideChain) -> None:
+    """Add a guide line: its elements with their faces, how the tool goes on to each, and how it ends at the next; without elements the
+    faces that it is for."""
+    element = add(parent, "guide", kind=chain.kind.value, closed=text_of(chain.closed))
+    if not chain.on:
+        for tag in chain.faces:
+            add(element, "face", tag=str(tag))
+    for word, face, link, _ in chain.elements():
+        words = {"move": word}
+        if face:
+            words["face"] = str(face)
+        if link is not None:
+            words["link"] = link.value
+        add(element, "element", **words)

@@ -8,7 +8,8 @@
 on what the strategy leaves to others, `settles` those of what it cuts where others leave it: a finding is kept quiet where another
 operation on the same faces settles it. `finds_rest`: the strategy finds for itself what an earlier cutter left. `goes_past` says by the
 settings how far in mm at most tips are past where they touch the drive's faces, by leads and overlaps; without it nobody knows.
-`earlier_cuts`: it wants to know where leaning tools have cut for the same feature before, unless it leaves an allowance.
+`earlier_cuts`: it wants to know where leaning tools have cut for the same feature before, unless it leaves an allowance. `own_faces`: an
+operation that a person gives other faces is led by these.
 
 `meets` is the largest engagement that the strategy can meet, from which the planner takes the peak of the load (`toolpath.engagement` has
 those that several strategies share); without it a strategy promises to meet no more than the cutting data's depth and width.
@@ -88,6 +89,7 @@ class Strategy(Protocol):
     meets: Meets
     goes_past: Callable[[Any], float]
     earlier_cuts: bool
+    own_faces: bool
 
     def __call__(
         self,
@@ -120,6 +122,7 @@ def strategy(
     meets: Meets = as_planned,
     goes_past: Callable[[Any], float] = anywhere,
     earlier_cuts: bool = False,
+    own_faces: bool = False,
 ) -> Callable[[F], F]:
     """Mark a function as a strategy and tell what it takes, what it leaves to others, and what engagement it can meet."""
     declared = {
@@ -132,6 +135,7 @@ def strategy(
         "meets": meets,
         "goes_past": goes_past,
         "earlier_cuts": earlier_cuts,
+        "own_faces": own_faces,
     }
 
     def mark(function: F) -> F:

@@ -48,5 +48,7 @@ def operation_listing(session: Session, id: str) -> str:
         return ""
     o = tree.operation(id)
     return listing(
-        Program(name=id, setup=tree.setup(o.setup), sections=(section_of(o, path.path),))
+        Program(
+            name=id, setup=tree.setup(o.setup), sections=(section_of(o, path.path, path.guides),)
+        )
     )

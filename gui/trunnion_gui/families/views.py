@@ -12,6 +12,7 @@ from trunnion.model.feature import Feature, Recognition
 from trunnion_gui.document import Document
 from trunnion_gui.face_edits import FaceEdits
 from trunnion_gui.families.contract import FamilyView, FeatureClass
+from trunnion_gui.guide_edits import GuideEdits
 
 
 class Views:
@@ -21,6 +22,7 @@ class Views:
         """Make the registered views; raise `BadCall` when two present the same kind of feature."""
         self._plain = FamilyView(document)
         self.face_edits = FaceEdits(document)
+        self.guide_edits = GuideEdits(document)
         self._by_name = {
             name: _view(name, document)
             for name in sorted({*registry.names("families"), *registry.names("views")})
@@ -85,9 +87,10 @@ class Views:
         kinds = {f.kind for f in found}
         return tuple(v for v in self if kinds & set(v.kinds) - (own & _declared(v.name)))
 
-    def face_menu(self, parent: QWidget, tags: tuple[int, ...]) -> QMenu:
-        """Return what may be done with some faces."""
+    def face_menu(self, parent: QWidget, tags: tuple[int, ...], operation: str = "") -> QMenu:
+        """Return what may be done with some faces; `operation` is the one that was selected before."""
         menu = QMenu(parent)
+        self.guide_edits.add_face_entries(menu, tags, operation)
         self.face_edits.add_face_entries(menu, tags)
         for view in self:
             view.add_face_entries(menu, tags)

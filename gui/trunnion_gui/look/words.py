@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from trunnion.model.feature import Size
 from trunnion.units import several, trimmed
 
 _ANGLES = ("lean", "angle", "taper", "theta", "tilt")
 _PLAIN = ("count_", "n_")
+_MOST_NAMED = 3
+"""Faces that a label names at most."""
 
 
 def kind_words(kind: str) -> str:
@@ -32,6 +36,12 @@ def message_sentence(words: str) -> str:
     first = words.partition(" ")[0]
     is_name = first.endswith(":") or any(letter in "._/" or letter.isdigit() for letter in first)
     return words if is_name else sentence(words)
+
+
+def faces_named(tags: Sequence[int]) -> str:
+    """Return the numbers of some faces for a label, the first three where there are more."""
+    more = "…" if len(tags) > _MOST_NAMED else ""
+    return ", ".join(map(str, tags[:_MOST_NAMED])) + more
 
 
 def counted(number: int, kind: str) -> str:

@@ -80,6 +80,19 @@ def test_an_operation_moves_and_stays_there_in_a_new_route(project, capsys, tmp_
     assert not resumed["suppressed"]
 
 
+def test_an_operation_is_led_by_the_faces_that_are_left(project, capsys):
+    wall = next(o for o in planned(project, capsys) if o["strategy"] == "plane.wall")
+    gone = wall["faces"][0]
+    led, after = changed(project, wall["id"], capsys, "--leave-out", str(gone))
+    assert led["own_faces"] and gone not in led["faces"]
+    assert next(o for o in after if o["id"] == wall["id"])["faces"] == led["faces"]
+    kept = project.with_name("changed.trunnion")
+    again = kept.with_name("again.trunnion")
+    assert main([*change(kept, wall["id"], again), "--add-faces", str(gone), "--json"]) == DONE
+    back = json.loads(capsys.readouterr().out)["operation"]
+    assert set(back["faces"]) == set(wall["faces"])
+
+
 def test_what_is_taken_out_stays_out(project, capsys):
     before = [o["id"] for o in planned(project, capsys)]
     gone, after = changed(project, before[-1], capsys, "--delete")
@@ -96,6 +109,9 @@ def test_what_is_taken_out_stays_out(project, capsys):
         (["--before", "nothing"], "there is no operation nothing; known: "),
         (["--copy", "--tool", "nothing"], "there is no tool nothing"),
         (["--on", "pocket-01"], "--on is for a copy"),
+        (["--leave-out", "12,x"], "--leave-out wants face numbers"),
+        (["--leave-out", "999"], "face 999 is not one of its faces"),
+        (["--add-faces", "999"], "on face 999; they are on face"),
         (["--copy", "--on", "nothing"], "there is no feature nothing; known: "),
     ],
 )

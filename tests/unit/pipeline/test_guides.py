@@ -40,7 +40,7 @@ def test_walls_are_led_at_their_feet(routed) -> None:
     lines = [g for g in engine.guides(session, wall.id).lines if g.kind is GuideKind.WALL]
     frame = session.process.setup(wall.setup).frame
     assert all(np.ptp(frame.to_local(line.points)[:, 2]) < 1e-9 for line in lines)
-    assert {t for line in lines for t in line.faces} <= set(
+    assert {t for line in lines for t in line.chain.faces} <= set(
         next(f for f in session.recognition if f.id == wall.feature).tags
     ) | set(wall.faces)
 

@@ -14,7 +14,7 @@ from trunnion.geometry.plane.region import Region
 from trunnion.model.guides import MOVES, GuideKind, LinkRelation
 from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.holes.hole import PlannedHole
-from trunnion.plan.plane_guides import relations_along, wall_line
+from trunnion.plan.plane_guides import GuideSpace, relations_along, wall_line
 from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive, WallGuide
 from trunnion.plan.turning.drive import RevolvedDrive
 from trunnion.plan.turning.gap_drive import GapDrive, GapPass
@@ -22,8 +22,12 @@ from trunnion.plan.turning.gap_drive import GapDrive, GapPass
 SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [0.0, 6.0]])
 
 
-def same(points):
-    return points
+def nowhere(points, faces):
+    return np.zeros(len(points), dtype=int)
+
+
+same = GuideSpace(lambda points: points, nowhere)
+"""The part's coordinates, and no face known."""
 
 
 @pytest.mark.parametrize(
@@ -56,9 +60,11 @@ def test_an_open_line_has_no_corner_at_its_ends() -> None:
 
 def test_lines_lie_where_the_setup_stands() -> None:
     frame = Frame(origin=[1.0, 2.0, 3.0], x=[0.0, 1.0, 0.0], z=[1.0, 0.0, 0.0])
-    line = wall_line(GuideKind.WALL, Curve.polygon(SQUARE), -4.0, (7,), frame.to_world)
+    space = GuideSpace(frame.to_world, nowhere)
+    on = np.array([7, 7, 8, 0])
+    line = wall_line(GuideKind.WALL, Curve.polygon(SQUARE), -4.0, on, (7, 8), space)
     assert frame.to_local(line.points)[:, 2] == pytest.approx(-4.0)
-    assert line.length == pytest.approx(32.0) and line.faces == (7,)
+    assert line.length == pytest.approx(32.0) and line.chain.faces == (7, 8)
     assert np.array_equal(line.points[0], line.points[-1])
 
 
@@ -75,7 +81,7 @@ def test_a_plane_drive_shows_walls_feet_and_floors_or_what_is_cleared() -> None:
     floor = Floor(z=-5.0, region=Region.of([Curve.polygon(SQUARE)]), fillet=0.0, face=9)
     lines = plane_drive(walls=(wall,), beside=(wall,), floors=(floor,)).guides(same)
     assert [line.kind for line in lines] == [GuideKind.WALL, GuideKind.FOOT, GuideKind.AREA]
-    assert lines[0].faces == (1, 2, 3, 4) and lines[2].faces == (9,)
+    assert lines[0].chain.faces == (1, 2, 3, 4) and lines[2].chain.faces == (9,)
     (cleared,) = plane_drive().guides(same)
     assert cleared.kind is GuideKind.AREA and cleared.points[:, 2] == pytest.approx(-5.0)
 

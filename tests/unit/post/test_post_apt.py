@@ -10,6 +10,7 @@ from programs import (
     BULL_10,
     CCW,
     FLAT_16,
+    GUIDES,
     LINE,
     RAPID,
     S1,
@@ -46,6 +47,28 @@ def test_programs_read_again_move_the_same(units):
             assert listing(second, marks=False) == listing(first, marks=False)
         for a, b in zip(first.sections, second.sections, strict=True):
             assert abs(a.path.position - b.path.position).max() < 13e-7
+
+
+def test_what_led_an_operation_is_remarked_before_its_motions_and_read_over():
+    path = path_of((RAPID, 10, 0, 5), (LINE, 0, 10, 4, 100))
+    led = replace(section("a", FLAT_16, path), guides=GUIDES)
+    text = text_of(Program(name="B1.S1", setup=S1, sections=(led,)))
+    lines = text.split("\n")
+    at = lines.index("$$ GUIDE/WALL,OPEN")
+    assert lines[at : at + 8] == [
+        "$$ GUIDE/WALL,OPEN",
+        "$$ TLLFT,GOFWD/FACE12,TO,FACE13",
+        "$$ TLLFT,GOLFT/FACE13,PAST,NOFACE",
+        "$$ TLLFT,GORGT/NOFACE",
+        "$$ GUIDE/WALL,CLOSED",
+        "$$ TLLFT,GOFWD/FACE15,TANTO,FACE15",
+        "$$ GUIDE/AREA,CLOSED,FACE9",
+        "RAPID",
+    ]
+    plain = "".join(f"{line}\n" for line in lines[:-1] if not line.startswith("$$"))
+    assert plain == text_of(Program(name="B1.S1", setup=S1, sections=(replace(led, guides=()),)))
+    one, other = (read_apt(t, TOOLS, [S1])[0] for t in (text, plain))
+    assert listing(one, marks=False) == listing(other, marks=False)
 
 
 def test_an_arc_is_a_circle_with_its_sense_and_the_goto_that_ends_it():

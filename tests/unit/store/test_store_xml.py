@@ -64,6 +64,27 @@ def test_a_process_tree_says_every_number_of_its_operations(tmp_path):
     assert [e.findtext("text") for e in root.findall("finding")] == [f.text for f in tree.findings]
 
 
+def test_a_process_tree_says_what_led_its_toolpaths(tmp_path):
+    root = root_of(write_process, tmp_path)
+    wall = next(e for e in root.findall("operation") if e.get("id") == "wall-01")
+    run, round_wall, floor = wall.findall("guide")
+    assert [dict(e.attrib) for e in (run, round_wall, floor)] == [
+        {"kind": "wall", "closed": "false"},
+        {"kind": "wall", "closed": "true"},
+        {"kind": "area", "closed": "true"},
+    ]
+    assert [dict(e.attrib) for e in run] == [
+        {"move": "GOFWD", "face": "12", "link": "TO"},
+        {"move": "GOLFT", "face": "13", "link": "PAST"},
+        {"move": "GORGT"},
+    ]
+    assert [dict(e.attrib) for e in round_wall] == [
+        {"move": "GOFWD", "face": "15", "link": "TANTO"}
+    ]
+    assert [dict(e.attrib) for e in floor] == [{"tag": "9"}]
+    assert all(not e.findall("guide") for e in root.findall("operation") if e is not wall)
+
+
 def test_a_process_tree_says_where_its_setups_are(tmp_path):
     tree, root = programs.process_tree(), root_of(write_process, tmp_path)
     for element, setup in zip(root.findall("setup"), tree.setups, strict=True):

@@ -12,6 +12,7 @@ from trunnion import registry
 from trunnion.cli.common import (
     check_output,
     exit_code,
+    face_tags_of,
     open_session,
     pairs_of,
     part_command,
@@ -63,6 +64,15 @@ def add(commands: Any) -> None:
         metavar="KEY=VALUE",
         help="a setting of its strategy for this operation alone; may be repeated",
     )
+    made.add_argument(
+        "--add-faces", default="", metavar="FACE,...", help="lead it along these faces too"
+    )
+    made.add_argument(
+        "--leave-out",
+        default="",
+        metavar="FACE,...",
+        help="lead it along its other faces only; fillets at the foot of a wall go with it",
+    )
     position = made.add_mutually_exclusive_group()
     position.add_argument(
         "--before", default="", metavar="ID", help="move it in front of another one of its setup"
@@ -85,12 +95,14 @@ def run(options: argparse.Namespace) -> int:
     from trunnion.store.project_file import PROJECT_SUFFIX
 
     own = pairs_of(options.own, "--own")
-    data = (options.tool, options.spindle, options.feed, own, options.before, options.last)
+    faces = (options.add_faces, options.leave_out)
+    data = (options.tool, options.spindle, options.feed, own, *faces, options.before, options.last)
     if options.on and not options.copy:
         raise BadCall("--on is for a copy: give --copy too")
     if not any((*data, options.copy, options.suppress, options.resume, options.delete)):
         raise BadCall(
-            "nothing to change: give --tool, --spindle, --feed, --own, --copy, --before, --last, --suppress, --resume or --delete"
+            "nothing to change: give --tool, --spindle, --feed, --own, --add-faces, --leave-out, --copy, --before, --last, --suppress, "
+            "--resume or --delete"
         )
     if options.delete and any((*data, options.copy)):
         raise BadCall("--delete takes the operation out: nothing else can be changed of it")
@@ -120,6 +132,7 @@ def _changed(
     options: argparse.Namespace, own: Mapping[str, str], engine: Engine, session: Session
 ) -> tuple[Session, str]:
     """Return the session with all that the options say of an operation, and the id of the one that they say it of."""
+    from trunnion.pipeline.planning.guide_faces import with_guide_faces
     from trunnion.plan.manual.operation_change import OperationChange, check_known
     from trunnion.plan.manual.operation_copy import with_copy, with_copy_on
     from trunnion.plan.manual.operation_order import with_operation_before
@@ -148,6 +161,15 @@ def _changed(
     if any(given.values()):
         change = choose(OperationChange, {f"operation.{name}": v for name, v in given.items()})
         session = engine.with_operation_change(session, id, change)
+    if options.add_faces or options.leave_out:
+        session = with_guide_faces(
+            engine,
+            session,
+            id,
+            add=face_tags_of(options.add_faces, "--add-faces"),
+            leave_out=face_tags_of(options.leave_out, "--leave-out"),
+            progress=progress_of(options),
+        )
     return session, id
 
 

@@ -9,11 +9,13 @@ from typing import Any
 from trunnion.cli.common import (
     check_output,
     exit_code,
+    listed,
     open_session,
     part_command,
     show_findings,
     show_json,
     table,
+    tags_in,
 )
 from trunnion.findings import BadCall, BadInput
 
@@ -77,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
     for given in options.take:
         session = face_edits.with_faces_taken(engine, session, *_named(given))
     for given in options.merge:
-        session = face_edits.with_merged(engine, session, _listed(given))
+        session = face_edits.with_merged(engine, session, listed(given))
     for given in options.make:
         session = face_edits.with_feature(engine, session, *_named(given))
     engine.save(session, options.out)
@@ -101,13 +103,9 @@ def run(options: argparse.Namespace) -> int:
 def _named(given: str) -> tuple[str, list[int]]:
     """Return what stands before and after the equals sign of an option's value."""
     name, equals, faces = given.partition("=")
-    listed = _listed(faces)
-    if not equals or not name or not listed or not all(f.isdecimal() for f in listed):
+    tags = tags_in(faces)
+    if not equals or not name or not tags:
         raise BadInput(
             f"{given}: give a name, = and face numbers with commas, as in pocket-01=12,13"
         )
-    return name, [int(f) for f in listed]
-
-
-def _listed(words: str) -> list[str]:
-    return [w.strip() for w in words.split(",") if w.strip()]
+    return name, tags

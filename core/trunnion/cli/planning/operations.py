@@ -29,6 +29,7 @@ def operation_dict(operation: Operation) -> dict[str, Any]:
         "by_hand": operation.by_hand,
         **({"copy_of": operation.copy_of} if operation.copy_of else {}),
         **({"moved": True} if operation.moved else {}),
+        **({"own_faces": True} if operation.own_faces else {}),
         "suppressed": operation.suppressed,
         **({"avoid": [asdict(b) for b in operation.avoid]} if operation.avoid else {}),
     }

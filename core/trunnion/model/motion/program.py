@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.geometry.arrays import Floats
+from trunnion.model.guides import GuideChain
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.operation import Operation
 from trunnion.model.setup import Setup
@@ -41,7 +42,8 @@ class ProgramSection:
     `width` ae and `depth` ap mm are the engagement that a `feed` in mm/min was chosen for; 0 where nothing is known of it. `dwell` s is how
     long the text makes the tool wait in all, the path's own dwells in it. At a constant `surface_speed` in m/min (0: none) the work turns
     about the setup's z and `spindle` is never passed. `feed_mode` is how a text gives the feeds, which the path has in mm/min. `stances`
-    are what it says of the rotary axes, each with the block at whose end they stand so.
+    are what it says of the rotary axes, each with the block at whose end they stand so. `guides` are the guide lines that led the
+    operation, where they are known.
     """
 
     operation: str
@@ -57,6 +59,7 @@ class ProgramSection:
     surface_speed: float = 0.0
     feed_mode: FeedMode = FeedMode.MINUTE
     stances: tuple[tuple[int, Stance], ...] = ()
+    guides: tuple[GuideChain, ...] = ()
 
     @property
     def spindle_stopped(self) -> bool:
@@ -77,8 +80,11 @@ class ProgramSection:
         )
 
 
-def section_of(operation: Operation, path: Toolpath) -> ProgramSection:
-    """Return the section that an operation's toolpath makes, with the engagement that its feed was chosen for."""
+def section_of(
+    operation: Operation, path: Toolpath, guides: tuple[GuideChain, ...] = ()
+) -> ProgramSection:
+    """Return the section that an operation's toolpath makes, with the engagement that its feed was chosen for, and the guide lines that led
+    it."""
     data = operation.data
     return ProgramSection(
         operation=operation.id,
@@ -91,6 +97,7 @@ def section_of(operation: Operation, path: Toolpath) -> ProgramSection:
         depth=data.depth,
         feed=data.feed,
         feed_mode=data.feed_mode,
+        guides=guides,
     )
 
 

@@ -43,7 +43,7 @@ def program_of(session: Session, setup: Setup) -> Program:
     for operation in session.process.of_setup(setup.name):
         made = session.path_of(operation.id)
         if made is not None and len(made.path):
-            sections.append(section_of(operation, made.path))
+            sections.append(section_of(operation, made.path, made.guides))
     return Program(
         name=f"{session.part.name}.{setup.name}",
         setup=held(session, setup),

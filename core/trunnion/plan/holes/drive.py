@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.holes.hole import Countersink, HoleShape, PlannedHole, hole_in, nearer_half
-from trunnion.plan.plane_guides import ToWorld, line_along
+from trunnion.plan.plane_guides import GuideSpace, line_along
 from trunnion.plan.settings import HALVES
 from trunnion.plan.setups.frames import cutting_setup
 from trunnion.plan.tool_choice import Candidates
@@ -56,14 +57,14 @@ class HoleDrive:
         """Whether there is no hole to cut."""
         return not self.holes
 
-    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+    def guides(self, space: GuideSpace) -> tuple[GuideCurve, ...]:
         """Return the holes' axes, as deep as their full diameters."""
         return tuple(
             line_along(
                 GuideKind.AXIS,
                 np.array([[h.x, h.y, h.top], [h.x, h.y, h.bottom]]),
                 h.faces,
-                to_world,
+                space,
             )
             for h in self.holes
         )
@@ -107,6 +108,9 @@ def hole_drive(
         holes += parts
         if operation.kind == COUNTERSINK and shape.countersink is not None:
             sinks.append(shape.countersink)
+    if operation.own_faces:
+        own = [bool(set(h.faces) & set(operation.faces)) for h in holes]
+        holes, sinks = list(compress(holes, own)), list(compress(sinks, own))
     drive = HoleDrive(
         kind=operation.kind, holes=tuple(holes), sinks=tuple(sinks), faces=operation.faces
     )

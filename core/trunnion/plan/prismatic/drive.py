@@ -11,13 +11,14 @@ from dataclasses import dataclass, replace
 
 from trunnion import tolerance
 from trunnion.findings import Refused
+from trunnion.geometry.arrays import Ints
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import Feature
 from trunnion.model.guides import GuideCurve, GuideKind
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.plane_guides import ToWorld, area_lines, wall_line
+from trunnion.plan.plane_guides import GuideSpace, area_lines, wall_faces_on, wall_line
 from trunnion.plan.prismatic.regions import (
     Band,
     SetupSpace,
@@ -68,6 +69,7 @@ class WallGuide:
     outer profile's loop clockwise. `curve` is closed for a wall all round; open (its ends at the open side) otherwise, and a lead may run
     past both ends within the level's boundary. The wall stands from `bottom` (the floor's height, or where the wall ends) to `top`;
     `fillet` is the radius at its foot (0: sharp); `faces` the tags of walls, corner blends and floor fillets that are finished along it.
+    `run_of` is all of the wall's curve where a person left faces out and `curve` is a run of what is left.
     """
 
     curve: Curve
@@ -75,11 +77,26 @@ class WallGuide:
     bottom: float
     fillet: float
     faces: tuple[int, ...]
+    run_of: Curve | None = None
 
     @property
     def is_around(self) -> bool:
         """Whether the part's material is inside a closed guide line, as of an island."""
-        return self.curve.closed and self.curve.area < 0.0
+        return self.loop.closed and self.loop.area < 0.0
+
+    @property
+    def loop(self) -> Curve:
+        """All of the wall's curve."""
+        return self.curve if self.run_of is None else self.run_of
+
+    def line(self, kind: GuideKind, space: GuideSpace) -> GuideCurve:
+        """Return the guide line at the wall's foot."""
+        return wall_line(kind, self.curve, self.bottom, self.faces_on(space), self.faces, space)
+
+    def faces_on(self, space: GuideSpace) -> Ints:
+        """Return the face (m,) of each segment of the curve, 0 where none of `faces` is found there."""
+        foot = min(self.bottom + self.fillet, self.top)
+        return wall_faces_on(self.curve, foot, self.top, self.faces, space)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -126,24 +143,24 @@ class PlaneDrive:
         """Whether no level has material that is wanted away."""
         return not any(level.wanted for level in self.levels)
 
-    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+    def guides(self, space: GuideSpace) -> tuple[GuideCurve, ...]:
         """Return the walls' guide lines at their feet, those of walls beside, and the rims of floors; without walls and floors those of
         what is cleared in each level."""
         walls = (
-            *(wall_line(GuideKind.WALL, w.curve, w.bottom, w.faces, to_world) for w in self.walls),
-            *(wall_line(GuideKind.FOOT, w.curve, w.bottom, w.faces, to_world) for w in self.beside),
+            *(w.line(GuideKind.WALL, space) for w in self.walls),
+            *(w.line(GuideKind.FOOT, space) for w in self.beside),
         )
         floors = [
             line
             for f in self.floors
-            for line in area_lines(f.region, f.z, (f.face,) if f.face else (), to_world)
+            for line in area_lines(f.region, f.z, (f.face,) if f.face else (), space)
         ]
         if walls or floors:
             return (*walls, *floors)
         return tuple(
             line
             for level in self.levels
-            for line in area_lines(level.wanted, level.bottom, (), to_world)
+            for line in area_lines(level.wanted, level.bottom, (), space)
         )
 
 

@@ -574,24 +574,26 @@ def filled_over(region: Region, points: Iterable[Floats]) -> Region:
 
 
 def runs(curve: Curve, keep: Bools) -> list[Curve]:
-    """Return the runs of successive segments of a closed curve that are kept (n,) as open curves; the curve itself when all are."""
+    """Return the runs of successive segments of a curve that are kept (n,) as open curves; the curve itself when all are."""
     wanted = np.asarray(keep, dtype=bool)
     if wanted.all():
         return [curve]
     if not wanted.any():
         return []
-    n = curve.n_segments
-    first = next(i for i in range(n) if wanted[i] and not wanted[i - 1])
+    n, before = curve.n_segments, np.roll(wanted, 1)
+    if not curve.closed:
+        before[0] = False
+    first = int(np.argmax(wanted & ~before))
     found: list[list[Curve]] = []
     for k in range(n):
         i = (first + k) % n
         if wanted[i]:
             one = Curve(
-                np.stack([curve.points[i], curve.points[(i + 1) % n]]),
+                np.stack([curve.points[i], curve.points[(i + 1) % len(curve.points)]]),
                 np.array([curve.bulges[i], 0.0]),
                 False,
             )
-            if k and wanted[i - 1]:
+            if k and before[i]:
                 found[-1].append(one)
             else:
                 found.append([one])

@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from trunnion.geometry.arrays import Floats, floats
 from trunnion.model.guides import GuideCurve, GuideKind
-from trunnion.plan.plane_guides import ToWorld, line_along
+from trunnion.plan.plane_guides import GuideSpace, line_along
 
 LEAST_AREA = 0.05
 """mm2 of the meridian: less is not worth a pass."""
@@ -34,11 +34,11 @@ class RevolvedDrive:
         """Whether there is nothing to turn."""
         return self.to_cut <= LEAST_AREA
 
-    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+    def guides(self, space: GuideSpace) -> tuple[GuideCurve, ...]:
         """Return the outline that must stand, in the half plane of x."""
         r, z = np.vstack([self.part, self.part[:1]]).T
         points = np.column_stack([r, np.zeros(len(r)), z])
-        return (line_along(GuideKind.CONTOUR, points, (), to_world),)
+        return (line_along(GuideKind.CONTOUR, points, (), space),)
 
     @cached_property
     def part_area(self) -> BaseGeometry:

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.development import Development
 from trunnion.model.guides import GuideCurve, GuideKind
-from trunnion.plan.plane_guides import ToWorld, line_along
+from trunnion.plan.plane_guides import GuideSpace, line_along
 
 ARC = math.radians(2.0)
 """Angle between two points of a guide line about the axis at most."""
@@ -39,10 +39,15 @@ class GapDrive:
         """Whether there is no gap to turn."""
         return not self.passes
 
-    def guides(self, to_world: ToWorld) -> tuple[GuideCurve, ...]:
+    def guides(self, space: GuideSpace) -> tuple[GuideCurve, ...]:
         """Return the arcs on the ground in the gaps of all passes; their places don't depend on the frame."""
         return tuple(
-            line_along(GuideKind.CONTOUR, self._arc(one, begin, end), (), np.asarray)
+            line_along(
+                GuideKind.CONTOUR,
+                self._arc(one, begin, end),
+                (),
+                GuideSpace(np.asarray, space.faces_at),
+            )
             for one in self.passes
             for begin, end in one.gaps
         )

@@ -13,6 +13,7 @@ import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import BadCall
+from trunnion.model.guides import GuideChain
 from trunnion.model.motion.program import Program, ProgramSection
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.setup import Setup
@@ -150,6 +151,27 @@ def _section(
     else:
         yield f"SPINDL/RPM,{turns},CLW"
     yield words.coolant[section.coolant]
+    for chain in section.guides:
+        yield from guide_lines(chain)
+
+
+def guide_lines(chain: GuideChain) -> Iterator[str]:
+    """Yield a guide line as remarks, in the words of a part program (ISO 4342): its faces are the drive and the check surfaces of the
+    motions that follow, which already are what an APT processor would make of it."""
+    state = "CLOSED" if chain.closed else "OPEN"
+    if not chain.on:
+        for tag in chain.faces:
+            yield f"$$ GUIDE/{chain.kind.upper()},{state},{_surface(tag)}"
+        return
+    yield f"$$ GUIDE/{chain.kind.upper()},{state}"
+    for word, face, link, following in chain.elements():
+        check = f",{link},{_surface(following)}" if link is not None else ""
+        yield f"$$ TLLFT,{word}/{_surface(face)}{check}"
+
+
+def _surface(tag: int) -> str:
+    """Return the name of a face's surface in a part program."""
+    return f"FACE{tag}" if tag else "NOFACE"
 
 
 def _blocks(

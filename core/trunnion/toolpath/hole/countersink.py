@@ -40,7 +40,7 @@ class CountersinkSettings:
     safety: float = safety()
 
 
-@strategy(settings=CountersinkSettings, drive=HoleDrive)
+@strategy(settings=CountersinkSettings, drive=HoleDrive, own_faces=True)
 def countersink(
     drive: HoleDrive,
     tool: Tool,

@@ -24,7 +24,7 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import trimmed
 
 
-@strategy(settings=DrillSettings, drive=HoleDrive, leaves=("hole.floor",))
+@strategy(settings=DrillSettings, drive=HoleDrive, leaves=("hole.floor",), own_faces=True)
 def drill(
     drive: HoleDrive,
     tool: Tool,

@@ -58,7 +58,13 @@ class MillSettings:
     safety: float = safety()
 
 
-@strategy(settings=MillSettings, drive=HoleDrive, settles=("hole.floor",), meets=full_width)
+@strategy(
+    settings=MillSettings,
+    drive=HoleDrive,
+    settles=("hole.floor",),
+    meets=full_width,
+    own_faces=True,
+)
 def mill(
     drive: HoleDrive,
     tool: Tool,

@@ -56,6 +56,7 @@ class FloorSettings:
     leaves=("floor.left",),
     settles=("floor.left",),
     meets=floor_leftovers,
+    own_faces=True,
 )
 def floor(
     drive: PlaneDrive,

@@ -142,7 +142,7 @@ def profile_rough(
     return _planned(drive, builder, findings)
 
 
-@strategy(settings=ProfileFinishSettings, drive=PlaneDrive, meets=contour_leftovers)
+@strategy(settings=ProfileFinishSettings, drive=PlaneDrive, meets=contour_leftovers, own_faces=True)
 def profile_finish(
     drive: PlaneDrive,
     tool: Tool,

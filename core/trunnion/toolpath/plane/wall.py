@@ -67,7 +67,7 @@ class WallSettings:
     safety: float = safety()
 
 
-@strategy(settings=WallSettings, drive=PlaneDrive, meets=eased_leftovers)
+@strategy(settings=WallSettings, drive=PlaneDrive, meets=eased_leftovers, own_faces=True)
 def wall(
     drive: PlaneDrive,
     tool: Tool,
@@ -95,7 +95,7 @@ def wall(
             boundary = _off_other_feet(level_at(drive, z).boundary, drive, guide, tool, z)
             distance = tool.radius + drive.wall_allowance + extra
             axis_region = axis_regions.of(
-                boundary, distance, mitred=guide.fillet > 0.0 and guide.curve.closed
+                boundary, distance, mitred=guide.fillet > 0.0 and guide.loop.closed
             )
             parts = contour_parts(axis_region, guide.curve, distance)
             cut_parts(builder, parts, z, axis_region, approach)
@@ -136,7 +136,7 @@ def _off_other_feet(
         if not other.is_around:
             pocket = max(pocket, more)
         elif more > tolerance.COINCIDENT:
-            islands = islands.union(Region.of([other.curve]).offset(more))
+            islands = islands.union(Region.of([other.loop]).offset(more))
     if pocket > tolerance.COINCIDENT:
         material_inside = _inside_of(w for w in (*drive.walls, *drive.beside) if w.is_around)
         boundary = boundary.union(material_inside).offset(-pocket).minus(material_inside)
@@ -145,7 +145,7 @@ def _off_other_feet(
 
 def _inside_of(guides: Iterable[WallGuide]) -> Region:
     """Return what closed guide lines run around."""
-    inside = [Region.of([g.curve]) for g in guides]
+    inside = [Region.of([g.loop]) for g in guides]
     return union_all(inside) if inside else EMPTY_REGION
 
 

@@ -50,6 +50,7 @@ class ConstantSettings:
     settles=(TOO_SHALLOW,),
     meets=surface_leftovers,
     goes_past=lambda settings: 2.0 * settings.lead_radius,
+    own_faces=True,
 )
 def constant(
     drive: SurfaceDrive,

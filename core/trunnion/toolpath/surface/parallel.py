@@ -152,6 +152,7 @@ class ParallelSettings:
     leaves=(TOO_STEEP,),
     settles=(TOO_SHALLOW,),
     meets=surface_leftovers,
+    own_faces=True,
 )
 def parallel(
     drive: SurfaceDrive,

@@ -102,7 +102,13 @@ class PencilSettings:
     )
 
 
-@strategy(settings=PencilSettings, drive=SurfaceDrive, finds_rest=True, meets=surface_leftovers)
+@strategy(
+    settings=PencilSettings,
+    drive=SurfaceDrive,
+    finds_rest=True,
+    meets=surface_leftovers,
+    own_faces=True,
+)
 def pencil(
     drive: SurfaceDrive,
     tool: Tool,

@@ -166,7 +166,11 @@ class PointSettings:
 
 
 @strategy(
-    settings=PointSettings, drive=SurfaceDrive, tool_axis=leaning_axis, meets=surface_leftovers
+    settings=PointSettings,
+    drive=SurfaceDrive,
+    tool_axis=leaning_axis,
+    meets=surface_leftovers,
+    own_faces=True,
 )
 def point(
     drive: SurfaceDrive,

@@ -52,7 +52,11 @@ class StreamlineSettings:
 
 
 @strategy(
-    settings=StreamlineSettings, drive=SurfaceDrive, leaves=(TOO_STEEP,), meets=surface_leftovers
+    settings=StreamlineSettings,
+    drive=SurfaceDrive,
+    leaves=(TOO_STEEP,),
+    meets=surface_leftovers,
+    own_faces=True,
 )
 def streamline(
     drive: SurfaceDrive,

@@ -102,6 +102,7 @@ class SwarfSettings:
     tool_axis=leaning_axis,
     meets=contour_leftovers,
     earlier_cuts=True,
+    own_faces=True,
 )
 def swarf(
     drive: SurfaceDrive,

@@ -140,6 +140,7 @@ class WaterlineSettings:
     settles=(TOO_STEEP,),
     meets=surface_leftovers,
     goes_past=lambda settings: settings.overlap + 2.0 * settings.lead_radius,
+    own_faces=True,
 )
 def waterline(
     drive: SurfaceDrive,
