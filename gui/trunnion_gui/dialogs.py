@@ -10,6 +10,7 @@ from trunnion_gui.document import PROJECT, Document
 from trunnion_gui.i18n import tr
 
 PART_FILES = "STEP, IGES, Trunnion (*.step *.stp *.stpz *.igs *.iges *.trunnion)"
+REVISED_FILES = "STEP, IGES (*.step *.stp *.stpz *.igs *.iges)"
 
 
 class FileDialogs:
@@ -22,6 +23,15 @@ class FileDialogs:
         """Ask which file to open."""
         return QFileDialog.getOpenFileName(
             self._window, tr("Open a part or a project"), "", PART_FILES
+        )[0]
+
+    def revised_path(self) -> str:
+        """Ask which revised part file to take up."""
+        return QFileDialog.getOpenFileName(
+            self._window,
+            tr("Take up a revised part"),
+            str(Path(self._document.files.path).parent),
+            REVISED_FILES,
         )[0]
 
     def save_path(self) -> str:

@@ -25,6 +25,7 @@ GENERAL = (
     "planning.route",
     "planning.optimize",
     "planning.change",
+    "planning.revision",
     "planning.plans",
     "planning.estimate",
     "planning.optimum",

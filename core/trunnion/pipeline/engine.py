@@ -117,6 +117,30 @@ class Engine:
         contexts.after(session.cuts, progress.part(0.9, 1.0))
         self._contexts, self._file = contexts, (data, suffix)
 
+    def revise(
+        self, session: Session, path: str | Path, progress: Progress = NO_PROGRESS
+    ) -> Session:
+        """Return the session of a revised part file with what a person did to the one before: features, cuts, fixtures, settings and
+        operations by hand, by matching faces; the engine goes on with the revised part.
+
+        Raises `BadInput` where the file can't be read or is another part; the engine keeps its part then.
+        """
+        from trunnion.pipeline.revision import revised
+
+        path, progress = Path(path), progress.afresh()
+        if session.part is None or self._contexts is None:
+            raise BadCall("no part is open: open a STEP or IGES file first")
+        if path.suffix.lower() == PROJECT_SUFFIX:
+            raise BadInput(f"{path.name} is a project: give the revised part file itself")
+        before, file = self._contexts, self._file
+        try:
+            solid = session.part.solid if session.part.n_solids > 1 else None
+            opened = self.open(path, solid=solid, progress=progress.part(0.0, 0.5))
+            return revised(self, session, before, opened, path, progress.part(0.5, 1.0))
+        except BaseException:
+            self._contexts, self._file = before, file
+            raise
+
     def keep(self) -> tuple[bytes, str]:
         """Return the bytes and the suffix of the part file as it was read, so that another engine can take over with `attach`."""
         return self._file

@@ -52,6 +52,22 @@ class Files(QObject):
             lambda found: self._install(found, file, file if file.endswith(PROJECT) else ""),
         )
 
+    def revise(self, path: str | Path) -> None:
+        """Take up a revised part file in place of the part, with what was done by hand, after a person was asked about unsaved work."""
+
+        def go_on() -> None:
+            if self._document.is_ready():
+                self._jobs.start(
+                    "revise",
+                    tr("taking up {name}").format(name=Path(path).name),
+                    self._document.session,
+                    str(path),
+                    finish=lambda found: self._install(found, str(path), "", is_saved=False),
+                )
+
+        if self._document.is_ready() and not self.holds_work(go_on):
+            go_on()
+
     def recover(self, path: str | Path, project: str) -> None:
         """Take up work from an autosave; it belongs to a project file (empty: none yet) and still has to be saved there."""
 

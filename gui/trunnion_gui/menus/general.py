@@ -120,6 +120,15 @@ def add_general_commands(window: WindowAccess) -> None:
         "An aircraft panel to try things with",
         is_free,
     )
+    command(
+        "file.revise",
+        "Take up a revised part…",
+        do.revise,
+        "revise",
+        "",
+        "Go on with a revised part file: settings, features and operations by hand are kept by matching faces",
+        has_part,
+    )
     command("file.save", "Save", do.save, "save", "Ctrl+S", "Save the project", has_part)
     command("file.save_as", "Save as…", do.save_as, "save_as", "Ctrl+Shift+S", "", has_part)
     command(

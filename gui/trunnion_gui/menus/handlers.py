@@ -31,6 +31,12 @@ class Handlers:
         if path:
             self._document.files.open(path)
 
+    def revise(self) -> None:
+        """Choose a revised part file and take it up."""
+        path = self._window.dialogs.revised_path()
+        if path:
+            self._document.files.revise(path)
+
     def open_sample(self) -> None:
         """Open the part that comes with the program."""
         self._sample = contextlib.ExitStack()

@@ -93,6 +93,15 @@ def _open(
     return OpenedSession(state_of(engine, session), drawing_of(mesh), engine.keep())
 
 
+def _revise(
+    engine: Any, progress: Progress, send_event: SendEvent, session: Session, path: str
+) -> OpenedSession:
+    revised = engine.revise(session, path, progress.part(0.0, 0.8))
+    send_event("progress", (0.85, "preparing the picture"))
+    mesh = engine.mesh(revised, progress.part(0.85, 1.0))
+    return OpenedSession(state_of(engine, revised), drawing_of(mesh), engine.keep())
+
+
 def _run(
     engine: Any, progress: Progress, send_event: SendEvent, session: Session, last: str
 ) -> SessionState:
@@ -238,6 +247,7 @@ def _offered(setting: Declared) -> Declared:
 
 COMMANDS: dict[str, Callable[..., Any]] = {
     "open": _open,
+    "revise": _revise,
     "run": _run,
     "states": _states,
     "attach": _attach,

@@ -280,3 +280,19 @@ def test_any_other_route_keeps_what_it_can_and_names_the_rest(plans, other):
     # Where the other route and what a person changed agree on what needs what, nothing comes too early.
     if all(o.after == other.operation(o.id).after for o in process.operations if o.id in planned):
         assert not [p for p in out_of_order(kept.operations) if kept.operation(p[0]).copy_of == ""]
+
+
+def test_a_cutter_by_hand_gets_a_number_of_its_own_in_a_new_route():
+    other = replace(FLAT_16, number=1, name="flat 12", diameter=12.0)
+    by_hand = replace(PLANNED.operation("wall"), tool=other, by_hand=True)
+    routed = with_manual_operations(PLANNED.with_operation(by_hand), PLANNED)
+    numbers = {o.tool.name: o.tool.number for o in routed.operations}
+    assert numbers == {FLAT_16.name: 1, "flat 12": 2}
+
+
+def test_an_operation_changed_by_hand_is_on_the_faces_of_the_new_route_but_for_those_a_person_chose():
+    planned = PLANNED.with_operation(replace(PLANNED.operation("wall"), faces=(4, 5, 6)))
+    before = replace(PLANNED.operation("wall"), faces=(4, 5), by_hand=True)
+    for own_faces, faces in ((False, (4, 5, 6)), (True, (4, 5))):
+        changed = PLANNED.with_operation(replace(before, own_faces=own_faces))
+        assert with_manual_operations(changed, planned).operation("wall").faces == faces

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from trunnion.findings import BadCall, BadInput
+from trunnion.findings import BadCall, BadInput, Finding, face_tags, warning
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline.planning.manual_edits import free_id, without_faces
@@ -74,6 +74,29 @@ def with_feature(engine: Engine, session: Session, kind: str, faces: Iterable[in
         id=free_id(kind, {*found.retired, *(f.id for f in found.features)}), kind=kind, faces=()
     )
     return _with_changed(engine, session, [_grown(made, wanted)], wanted)
+
+
+def described_anew(engine: Engine, session: Session, findings: list[Finding]) -> Session:
+    """Return the session with the features that a person made or changed described by what their faces are now, as on a revised part; of
+    those that can't be so any more `findings` tell, and they stay as they were."""
+    found = _recognition(session)
+    kinds = describable_kinds(found.family)
+    for feature in found.features:
+        if not feature.by_hand or feature.kind not in kinds:
+            continue
+        try:
+            session = _with_changed(engine, session, [feature], ())
+        except BadInput as reason:
+            findings.append(
+                warning(
+                    "revision.feature-shape",
+                    f"{feature.id}, made or changed by hand, keeps its sizes: {reason}",
+                    feature.id,
+                    *face_tags(feature.tags),
+                    remedy="give it other faces, or delete it",
+                )
+            )
+    return session
 
 
 def _with_changed(

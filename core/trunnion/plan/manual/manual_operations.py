@@ -9,6 +9,7 @@ from trunnion.findings import Finding, warning
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.manual.operation_order import out_of_order
+from trunnion.plan.process import with_tool_numbers
 
 
 def with_manual_operations(before: ProcessTree | None, made: ProcessTree) -> ProcessTree:
@@ -22,14 +23,26 @@ def with_manual_operations(before: ProcessTree | None, made: ProcessTree) -> Pro
     planned = {o.id for o in made.operations}
     changed = {o.id: o for o in before.operations if o.by_hand and o.id in planned}
     copies = {o.id for o in before.operations if _is_copied(o, planned, made)}
-    kept = [changed.get(o.id, o) for o in made.operations if o.id not in before.removed]
+    kept = [
+        _taken_over(changed.get(o.id), o) for o in made.operations if o.id not in before.removed
+    ]
     operations, left = _reordered(_without_lost_needs(kept, copies), before, copies)
     return replace(
         made,
-        operations=_without_lost_needs(operations),
+        # A cutter of the plan before has the number that it had there.
+        operations=with_tool_numbers(_without_lost_needs(operations)),
         removed=tuple(dict.fromkeys((*made.removed, *before.removed))),
         findings=(*made.findings, *_lost(before, planned | copies), *_not_moved(left)),
     )
+
+
+def _taken_over(changed: Operation | None, planned: Operation) -> Operation:
+    """Return an operation as a person changed it, on the faces that the new route has for it where he chose none."""
+    if changed is None:
+        return planned
+    if changed.own_faces or changed.strategy != planned.strategy:
+        return changed
+    return replace(changed, faces=planned.faces)
 
 
 def _is_copied(operation: Operation, planned: set[str], made: ProcessTree) -> bool:
