@@ -11,7 +11,7 @@ from trunnion.geometry.mesh import Mesh
 
 
 def nearest_faces(mesh: Mesh, points: Floats, tags: Iterable[int], within: float) -> Ints:
-    """Return which of some faces (tags) each point (n, 3) is nearest to, the first of equally near ones; 0 where none is `within` mm.
+    """Return which of some faces (tags) each point (n, 3) is nearest to, the lowest of equally near ones; 0 where none is `within` mm.
 
     >>> corners = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]])
     >>> mesh = Mesh(corners, np.array([[0, 1, 2]]), np.array([7]))
@@ -19,9 +19,11 @@ def nearest_faces(mesh: Mesh, points: Floats, tags: Iterable[int], within: float
     [7, 0]
     """
     found, least = np.zeros(len(points), dtype=np.int64), np.full(len(points), within)
-    corners = mesh.corners()
-    for tag in tags:
-        own = corners[mesh.face == tag]
+    known = np.unique(np.fromiter(tags, dtype=np.int64))
+    rows_of = np.flatnonzero(np.isin(mesh.face, known))
+    corners, face = mesh.points[mesh.triangles[rows_of]], mesh.face[rows_of]
+    for tag in known.tolist():
+        own = corners[face == tag]
         if not len(own):
             continue
         low, high = own.min(axis=(0, 1)) - within, own.max(axis=(0, 1)) + within

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trunnion import tolerance
+from trunnion.findings import OutOfMemory
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.cut import Cut
 from trunnion.geometry.frame import WORLD, Frame
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from trunnion.part.part import Part
 
 
+COARSER = 4.0
+"""How many times the chord error of a part is that has too many triangles: a tenth of `tolerance.GOUGE` still, for finishing."""
 DECIMALS = 7
 """Decimals of a box in mm: ten times finer than two points are distinguished."""
 
@@ -75,11 +78,17 @@ class Context:
         return self._machined[key]
 
     def skin(self, chord: float = tolerance.SKIN_CHORD, progress: Progress = NO_PROGRESS) -> Skin:
-        """Return the part's skin in its own coordinates within a chord error (mm), as fine as finishing needs it unless said; kept."""
+        """Return the part's skin in its own coordinates within a chord error (mm), as fine as finishing needs it unless said; kept.
+
+        A part of too many triangles for that is taken `COARSER` times as coarse; raises `OutOfMemory` where that is too fine as well.
+        """
         if chord not in self._skins:
             from trunnion.part.shape.skin import skin_of
 
-            self._skins[chord] = skin_of(self.part, WORLD, chord, progress)
+            try:
+                self._skins[chord] = skin_of(self.part, WORLD, chord, progress)
+            except OutOfMemory:
+                self._skins[chord] = skin_of(self.part, WORLD, COARSER * chord, progress)
         return self._skins[chord]
 
     def box(self, frame: Frame) -> tuple[Floats, Floats]:

@@ -240,7 +240,7 @@ class PathJobs:
         if registry.get(STRATEGIES, operation.strategy).drive is PlaneDrive:
             # All copies look for the faces of their guide lines in the same triangles: they are made once, before them.
             part = self._scene.context.part
-            part.mesh(part.view_chord)
+            part.mesh(part.picture_chord)
         self._idle()
         copy = Fork(partial(_made_ahead, self._scene, begun.prepared))
         self._copies.append(copy)

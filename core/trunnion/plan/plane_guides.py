@@ -36,8 +36,8 @@ class MeshSource(Protocol):
     """What is asked of a part to find its faces."""
 
     @property
-    def view_chord(self) -> float:
-        """Chord error (mm) of triangles that are exact enough to be shown."""
+    def picture_chord(self) -> float:
+        """Chord error (mm) of the triangles that pictures show: they are made anyway."""
 
     def mesh(self, chord: float) -> Mesh:
         """Return triangles of the solid within a chord error (mm)."""
@@ -49,7 +49,7 @@ def guide_space(part: MeshSource, to_world: Callable[[Floats], Floats]) -> Guide
     def faces_at(points: Floats, faces: tuple[int, ...]) -> Ints:
         if not faces:
             return np.zeros(len(points), dtype=np.int64)
-        chord = part.view_chord
+        chord = part.picture_chord
         return nearest_faces(part.mesh(chord), points, faces, ON_FACE + chord)
 
     return GuideSpace(to_world, faces_at)
