@@ -14,7 +14,7 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.words import faces_named
 from trunnion_gui.worker import guide_requests
-from trunnion_gui.worker.requests import Work
+from trunnion_gui.worker.requests import SessionState, Work
 
 
 class GuideEdits(QObject):
@@ -71,8 +71,8 @@ class GuideEdits(QObject):
         ]
 
     def _change(self, work: Work, label: str, id: str, tags: tuple[int, ...]) -> None:
-        def keep(state: object) -> None:
-            self._document.keep(label, state)  # type: ignore[arg-type]
+        def keep(state: SessionState) -> None:
+            self._document.keep(label, state)
             self._document.selection.select_operation(id)
 
         self._document.request(work, label, id, tags, finish=keep)

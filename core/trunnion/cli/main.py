@@ -25,7 +25,7 @@ GENERAL = (
     "planning.route",
     "planning.optimize",
     "planning.change",
-    "planning.revision",
+    "planning.revise",
     "planning.plans",
     "planning.estimate",
     "planning.optimum",

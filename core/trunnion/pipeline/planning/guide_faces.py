@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from trunnion import registry
 from trunnion.findings import BadCall, BadInput
+from trunnion.geometry.facegraph import FaceGraph
 from trunnion.model.guides import GuideChain, GuideKind
 from trunnion.model.operation import Operation
 from trunnion.model.session import Session
@@ -126,18 +127,24 @@ def _followed(
     session: Session,
     operation: Operation,
     gone: set[int],
-    more: Iterable[int],
+    more: Collection[int],
     known: _GuideFaces,
 ) -> tuple[int, ...]:
-    """Return an operation's faces without those that are gone and with more of them, and the fillets that are at the foot of what is left
-    or has come."""
+    """Return an operation's faces without those that are gone and the fillets at their feet, and with more of them and theirs."""
     graph = engine.context_of(session).part.graph()
-
-    def is_at_foot_of(tag: int, leading: Iterable[int]) -> bool:
-        return bool({row + 1 for row in graph.neighbours(tag - 1)}.intersection(leading))
-
     faces = [*(t for t in operation.faces if t not in gone), *more]
-    leading = known.leading.intersection(faces)
-    stay = [t for t in faces if t not in known.at_feet or is_at_foot_of(t, leading)]
-    come = [t for t in sorted(known.at_feet - gone) if is_at_foot_of(t, more)]
+    wall = {t: _wall_over(graph, t, known.leading) for t in known.at_feet}
+    stay = [t for t in faces if wall.get(t, 0) not in gone]
+    come = [t for t in sorted(known.at_feet - gone) if wall[t] in more]
     return tuple(dict.fromkeys((*stay, *come)))
+
+
+def _wall_over(graph: FaceGraph, fillet: int, walls: Collection[int]) -> int:
+    """Return which of some walls a fillet is at the foot of: the one that it shares the longest edge with; 0 where it is beside none."""
+    edges = [
+        (float(graph.length[e]), other)
+        for e in graph.edges_of[fillet - 1]
+        for other in (graph.across(e, fillet - 1) + 1,)
+        if other in walls
+    ]
+    return max(edges, default=(0.0, 0))[1]

@@ -69,7 +69,8 @@ class WallGuide:
     outer profile's loop clockwise. `curve` is closed for a wall all round; open (its ends at the open side) otherwise, and a lead may run
     past both ends within the level's boundary. The wall stands from `bottom` (the floor's height, or where the wall ends) to `top`;
     `fillet` is the radius at its foot (0: sharp); `faces` the tags of walls, corner blends and floor fillets that are finished along it.
-    `run_of` is all of the wall's curve where a person left faces out and `curve` is a run of what is left.
+    `run_of` is all of the wall's curve where a person left faces out and `curve` is a run of what is left: past its ends goes a wall that
+    is not to be cut.
     """
 
     curve: Curve

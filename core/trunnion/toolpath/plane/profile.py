@@ -169,9 +169,8 @@ def profile_finish(
                 f"{drive.feature}: pass at {z:.3f}",
             )
             axis_region = AxisRegion.of(level_at(drive, z).boundary, distance)
-            cut_parts(
-                builder, contour_parts(axis_region, guide.curve, distance), z, axis_region, approach
-            )
+            parts = contour_parts(axis_region, guide.curve, distance)
+            cut_parts(builder, parts, z, axis_region, approach, past=guide.run_of is None)
         if tool.corner_radius > 0.0:
             findings.append(
                 warning(

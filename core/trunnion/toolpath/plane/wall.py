@@ -98,7 +98,7 @@ def wall(
                 boundary, distance, mitred=guide.fillet > 0.0 and guide.loop.closed
             )
             parts = contour_parts(axis_region, guide.curve, distance)
-            cut_parts(builder, parts, z, axis_region, approach)
+            cut_parts(builder, parts, z, axis_region, approach, past=guide.run_of is None)
             found = found or bool(parts)
         findings += _remaining_findings(drive, guide, tool, found, axis_regions)
     if settings.floor_rest:
