@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QObject
@@ -14,7 +14,7 @@ from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.words import faces_named
 from trunnion_gui.worker import guide_requests
-from trunnion_gui.worker.requests import SessionState, Work
+from trunnion_gui.worker.requests import SessionState
 
 
 class GuideEdits(QObject):
@@ -36,18 +36,18 @@ class GuideEdits(QObject):
     def lead_along(self, id: str, tags: tuple[int, ...]) -> None:
         """Lead an operation along faces too."""
         label = tr("Lead {id} along face {faces}").format(id=id, faces=faces_named(tags))
-        self._change(guide_requests.lead_along, label, id, tags)
+        self._change(label, id, tags, ())
 
     def leave_out(self, id: str, tags: tuple[int, ...]) -> None:
         """Lead an operation along its other faces only."""
         label = tr("Leave face {faces} out of {id}").format(id=id, faces=faces_named(tags))
-        self._change(guide_requests.leave_out, label, id, tags)
+        self._change(label, id, (), tags)
 
     def _add(
         self,
         menu: QMenu,
         title: str,
-        change: Work,
+        change: Callable[[str, tuple[int, ...]], None],
         entries: Sequence[tuple[Operation, tuple[int, ...]]],
         selected: Operation | None,
     ) -> None:
@@ -70,9 +70,11 @@ class GuideEdits(QObject):
             if o.faces and (set(o.faces) & set(tags) or owners.intersection(o.all_features))
         ]
 
-    def _change(self, work: Work, label: str, id: str, tags: tuple[int, ...]) -> None:
+    def _change(
+        self, label: str, id: str, along: tuple[int, ...], leave_out: tuple[int, ...]
+    ) -> None:
         def keep(state: SessionState) -> None:
             self._document.keep(label, state)
             self._document.selection.select_operation(id)
 
-        self._document.request(work, label, id, tags, finish=keep)
+        self._document.request(guide_requests.lead, label, id, along, leave_out, finish=keep)

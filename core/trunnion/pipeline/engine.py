@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -117,29 +118,16 @@ class Engine:
         contexts.after(session.cuts, progress.part(0.9, 1.0))
         self._contexts, self._file = contexts, (data, suffix)
 
-    def revise(
-        self, session: Session, path: str | Path, progress: Progress = NO_PROGRESS
-    ) -> Session:
-        """Return the session of a revised part file with what a person did to the one before: features, cuts, fixtures, settings and
-        operations by hand, by matching faces; the engine goes on with the revised part.
+    def beside(self) -> Engine:
+        """Return an engine of the same shop and plan library in which no part is open."""
+        made = copy(self)
+        made._contexts, made._file, made._playback, made._guides = None, (b"", ""), None, None
+        return made
 
-        Raises `BadInput` where the file can't be read or is another part; the engine keeps its part then.
-        """
-        from trunnion.pipeline.revision import revised
-
-        path, progress = Path(path), progress.afresh()
-        if session.part is None or self._contexts is None:
-            raise BadCall("no part is open: open a STEP or IGES file first")
-        if path.suffix.lower() == PROJECT_SUFFIX:
-            raise BadInput(f"{path.name} is a project: give the revised part file itself")
-        before, file = self._contexts, self._file
-        try:
-            solid = session.part.solid if session.part.n_solids > 1 else None
-            opened = self.open(path, solid=solid, progress=progress.part(0.0, 0.5))
-            return revised(self, session, before, opened, path, progress.part(0.5, 1.0))
-        except BaseException:
-            self._contexts, self._file = before, file
-            raise
+    def take_over(self, other: Engine) -> None:
+        """Go on with the part that is open in another engine."""
+        self._contexts, self._file = other._contexts, other._file
+        self._playback, self._guides = None, None
 
     def keep(self) -> tuple[bytes, str]:
         """Return the bytes and the suffix of the part file as it was read, so that another engine can take over with `attach`."""

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.findings import BadInput, Finding, face_tags, info, warning
+from trunnion.findings import BadCall, BadInput, Finding, face_tags, info, warning
 from trunnion.geometry.cut import Cut
 from trunnion.geometry.face_matching import FaceMatch, matched_faces
 from trunnion.model.feature import Feature, Recognition
@@ -21,11 +21,11 @@ from trunnion.model.process import ProcessTree
 from trunnion.model.session import Session, StepRecord
 from trunnion.pipeline.planning.face_edits import described_anew
 from trunnion.pipeline.planning.manual_edits import free_id
-from trunnion.progress import Progress
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value
+from trunnion.store.project_file import PROJECT_SUFFIX
 
 if TYPE_CHECKING:
-    from trunnion.pipeline.context import Contexts
     from trunnion.pipeline.engine import Engine
 
 LEAST_SAME = 0.1
@@ -39,21 +39,40 @@ _NAME = re.compile(r"[A-Za-z_]+-\d+")
 
 
 def revised(
-    engine: Engine,
+    engine: Engine, session: Session, path: str | Path, progress: Progress = NO_PROGRESS
+) -> Session:
+    """Return the session of a revised part file with what a person did to the one before: features, cuts, fixtures, settings and operations
+    by hand; the engine goes on with the revised part.
+
+    Its features are recognised; later steps are stale. Raises `BadInput` where the file can't be read or is another part; the engine keeps
+    its part then.
+    """
+    path, progress = Path(path), progress.afresh()
+    if session.part is None:
+        raise BadCall("no part is open: open a STEP or IGES file first")
+    if path.suffix.lower() == PROJECT_SUFFIX:
+        raise BadInput(f"{path.name} is a project: give the revised part file itself")
+    solid = session.part.solid if session.part.n_solids > 1 else None
+    after = engine.beside()
+    opened = after.open(path, solid=solid, progress=progress.part(0.0, 0.5))
+    made = _carried_over(engine, session, after, opened, path, progress.part(0.5, 1.0))
+    engine.take_over(after)
+    return made
+
+
+def _carried_over(
+    before: Engine,
     session: Session,
-    before: Contexts,
+    engine: Engine,
     opened: Session,
     path: Path,
     progress: Progress,
 ) -> Session:
-    """Return the session of a revised part, which `opened` is as read; `before` are the contexts of the part that `session` is of.
-
-    Its features are recognised; later steps are stale. Raises `BadInput` where it is another part.
-    """
+    """Return the session of the revised part, as `opened` by an engine, with what a person did to the one that `session` is of."""
     made = replace(opened, choices=session.choices, fixtures=session.fixtures)
-    made, lost_cuts = _with_cuts(engine, session, before, made, progress.part(0.0, 0.3))
+    made, lost_cuts = _with_cuts(before, session, engine, made, progress.part(0.0, 0.3))
     match = matched_faces(
-        before.after(session.cuts).part.graph(), engine.context_of(made).part.graph()
+        before.context_of(session).part.graph(), engine.context_of(made).part.graph()
     )
     same, n = int(match.same.sum()), len(match.same)
     if same < LEAST_SAME * n:
@@ -93,14 +112,15 @@ def revised(
 
 
 def _with_cuts(
-    engine: Engine, session: Session, before: Contexts, made: Session, progress: Progress
+    before: Engine, session: Session, engine: Engine, made: Session, progress: Progress
 ) -> tuple[Session, list[Finding]]:
     """Return the session of the revised part with the cuts that can be made there too, and findings on the others."""
     cuts, lost = list[Cut](), list[Finding]()
     for n, cut in enumerate(session.cuts):
         progress.at(n / len(session.cuts), "cutting faces again")
         match = matched_faces(
-            before.after(session.cuts[:n]).part.graph(), engine.context_of(made).part.graph()
+            before.context_of(replace(session, cuts=session.cuts[:n])).part.graph(),
+            engine.context_of(made).part.graph(),
         )
         face = match.of(cut.face)
         try:

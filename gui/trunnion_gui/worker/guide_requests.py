@@ -1,4 +1,4 @@
-"""What the worker does to the faces that lead operations: more of them, fewer of them. No Qt."""
+"""What the worker does to the faces that lead operations. No Qt."""
 
 from __future__ import annotations
 
@@ -9,31 +9,17 @@ from trunnion.progress import Progress
 from trunnion_gui.worker.requests import SendEvent, SessionState, state_of
 
 
-def lead_along(
+def lead(
     engine: Any,
     progress: Progress,
     _send_event: SendEvent,
     session: Session,
     id: str,
-    faces: tuple[int, ...],
+    along: tuple[int, ...],
+    leave_out: tuple[int, ...],
 ) -> SessionState:
-    """Return the session with an operation led along some faces too."""
+    """Return the session with an operation led along some faces too, and some left out of it."""
     from trunnion.pipeline.planning.guide_faces import with_guide_faces
 
-    return state_of(engine, with_guide_faces(engine, session, id, add=faces, progress=progress))
-
-
-def leave_out(
-    engine: Any,
-    progress: Progress,
-    _send_event: SendEvent,
-    session: Session,
-    id: str,
-    faces: tuple[int, ...],
-) -> SessionState:
-    """Return the session with an operation led along its other faces only."""
-    from trunnion.pipeline.planning.guide_faces import with_guide_faces
-
-    return state_of(
-        engine, with_guide_faces(engine, session, id, leave_out=faces, progress=progress)
-    )
+    made = with_guide_faces(engine, session, id, add=along, leave_out=leave_out, progress=progress)
+    return state_of(engine, made)

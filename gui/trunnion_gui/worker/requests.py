@@ -96,10 +96,12 @@ def _open(
 def _revise(
     engine: Any, progress: Progress, send_event: SendEvent, session: Session, path: str
 ) -> OpenedSession:
-    revised = engine.revise(session, path, progress.part(0.0, 0.8))
+    from trunnion.pipeline.revision import revised
+
+    made = revised(engine, session, path, progress.part(0.0, 0.8))
     send_event("progress", (0.85, "preparing the picture"))
-    mesh = engine.mesh(revised, progress.part(0.85, 1.0))
-    return OpenedSession(state_of(engine, revised), drawing_of(mesh), engine.keep())
+    mesh = engine.mesh(made, progress.part(0.85, 1.0))
+    return OpenedSession(state_of(engine, made), drawing_of(mesh), engine.keep())
 
 
 def _run(

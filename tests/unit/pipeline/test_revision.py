@@ -14,6 +14,7 @@ from trunnion.geometry.cut import plane_cut
 from trunnion.pipeline import Engine
 from trunnion.pipeline.planning.face_edits import with_feature
 from trunnion.pipeline.planning.guide_faces import with_guide_faces
+from trunnion.pipeline.revision import revised
 from trunnion.plan.manual.operation_change import OperationChange
 from trunnion.plan.manual.operation_copy import with_copy
 
@@ -64,7 +65,7 @@ def test_features_keep_their_names_where_others_are_new_or_changed(planned, turn
     engine = opened(planned)
     before = floors(engine, planned)
     revision = PanelDesign(left_floor=6.0, third=True)
-    made = engine.revise(planned, file_of(revision, turned_round))
+    made = revised(engine, planned, file_of(revision, turned_round))
     after = floors(engine, made)
     assert set(before) == {"pocket-01", "pocket-02"}
     assert set(after) == {*before, "pocket-03"} and after["pocket-03"][0] == pytest.approx(143.0)
@@ -90,7 +91,7 @@ def test_operations_by_hand_and_their_faces_are_kept_and_proven(planned) -> None
     session = engine.with_operation_change(session, "rough-pocket-01", OperationChange(feed=3000.0))
     session = replace(session, process=with_copy(session.process, "wall-pocket-01")[0])
 
-    made = engine.revise(session, file_of(PanelDesign(right_length=51.0), turned_round=True))
+    made = revised(engine, session, file_of(PanelDesign(right_length=51.0), turned_round=True))
     states = engine.states(made)
     assert states["recognize"] == "done" and states["route"] == "stale"
     made = engine.run(made)
@@ -117,7 +118,8 @@ def test_what_has_no_counterpart_is_told(planned) -> None:
     }
     drill = the(planned, "drill-hole-01")
     session = with_guide_faces(engine, planned, drill.id, leave_out=drill.faces[:1])
-    made = engine.revise(
+    made = revised(
+        engine,
         replace(session, choices=choices),
         file_of(PanelDesign(island=False, holes=((145.0, 20.0),)), turned_round=True),
     )
@@ -138,10 +140,10 @@ def test_features_by_hand_are_measured_anew_or_told_to_be_gone(planned) -> None:
     pocket = planned.recognition.feature("pocket-01")
     session = with_feature(engine, planned, "pocket", pocket.with_role("floor"))
     made_by_hand = next(f for f in session.recognition if f.by_hand and f.id != "pocket-01")
-    revised = engine.revise(session, file_of(PanelDesign(left_floor=7.0), turned_round=True))
-    again = revised.recognition.feature(made_by_hand.id)
+    made = revised(engine, session, file_of(PanelDesign(left_floor=7.0), turned_round=True))
+    again = made.recognition.feature(made_by_hand.id)
     assert again.by_hand and again.sizes["floor_z"] == 7.0 != made_by_hand.sizes["floor_z"]
-    assert revised.recognition.feature("pocket-01").by_hand
+    assert made.recognition.feature("pocket-01").by_hand
 
     island = planned.recognition.of_kind("island")[0]
     engine = opened(planned)
@@ -151,7 +153,7 @@ def test_features_by_hand_are_measured_anew_or_told_to_be_gone(planned) -> None:
             replace(f, by_hand=True) if f is island else f for f in planned.recognition.features
         ),
     )
-    gone = engine.revise(replace(planned, recognition=own), file_of(PanelDesign(island=False)))
+    gone = revised(engine, replace(planned, recognition=own), file_of(PanelDesign(island=False)))
     assert "island-01, made or changed by hand, had faces" in codes(gone)["revision.feature-lost"]
     assert not gone.recognition.of_kind("island") and "island-01" in gone.recognition.retired
 
@@ -178,7 +180,7 @@ def test_cuts_are_made_again_where_their_face_is_still_there(planned) -> None:
         plane_cut(floor, middle, (0.0, 1.0, 0.0)),
     )
     session = engine.with_cuts(base, cuts)
-    made = engine.revise(session, file_of(PanelDesign(island=False), turned_round=True))
+    made = revised(engine, session, file_of(PanelDesign(island=False), turned_round=True))
     assert len(made.cuts) == 1 and "revision.cut-lost" in codes(made)
     after = engine.context_of(made).part.graph()
     row = made.cuts[0].face - 1
@@ -190,19 +192,19 @@ def test_another_part_is_refused_and_the_engine_keeps_its_own(planned, tmp_path)
     engine = opened(planned)
     digest = engine.context.part.digest
     with pytest.raises(BadInput, match="it is another part, or lies elsewhere"):
-        engine.revise(planned, block_with_pocket())
+        revised(engine, planned, block_with_pocket())
     with pytest.raises(BadInput, match="no such file"):
-        engine.revise(planned, tmp_path / "panel.step")
+        revised(engine, planned, tmp_path / "panel.step")
     with pytest.raises(BadInput, match="is a project"):
-        engine.revise(planned, tmp_path / "panel.trunnion")
+        revised(engine, planned, tmp_path / "panel.trunnion")
     assert engine.context.part.digest == digest
     with pytest.raises(BadCall, match="no part is open"):
-        Engine().revise(planned, file_of(BASE))
+        revised(Engine(), planned, file_of(BASE))
 
 
 def test_a_session_of_which_nothing_is_recognised_is_just_opened(planned) -> None:
     engine = opened(planned)
     session = replace(engine.open(file_of(BASE)), choices={"route.wall_allowance": 0.4})
-    made = engine.revise(session, file_of(PanelDesign(third=True)))
+    made = revised(engine, session, file_of(PanelDesign(third=True)))
     assert made.recognition is None and made.choices == session.choices
     assert set(engine.states(made).values()) == {"empty"}

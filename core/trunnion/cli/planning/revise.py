@@ -41,6 +41,7 @@ def add(commands: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Take up the revised part, plan as far as the project was planned, save, and print what came of it."""
+    from trunnion.pipeline.revision import revised
     from trunnion.store.project_file import PROJECT_SUFFIX
 
     if options.out.suffix.lower() != PROJECT_SUFFIX:
@@ -48,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     check_output(options.out.parent)
     engine, session = open_session(options, None)
     was_planned = session.process is not None
-    session = engine.revise(session, options.by, progress_of(options))
+    session = revised(engine, session, options.by, progress_of(options))
     if was_planned:
         session = engine.run(session, "optimize", progress_of(options))
     engine.save(session, options.out)
