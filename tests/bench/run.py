@@ -128,6 +128,7 @@ def figures(folder: Path, only: str, quick: bool) -> Iterator[Figure]:
 def cases(folder: Path, quick: bool) -> dict[str, Callable[[], Iterator[Figure]]]:
     """Return what can be measured, by name."""
     from cases import contact, graph, recognition, roughing, whole_line
+    from drive_geometry import drive_geometry
     from drop import drop
     from proof import PROOF
     from released import released
@@ -145,7 +146,12 @@ def cases(folder: Path, quick: bool) -> dict[str, Callable[[], Iterator[Figure]]
         **{name: partial(case, path, folder, compared) for name, case in panel.items()},
         **{
             name: partial(_rows, case, quick)
-            for name, case in {**PROOF, "drop": drop, "released": released}.items()
+            for name, case in {
+                **PROOF,
+                "drop": drop,
+                "drive-geometry": drive_geometry,
+                "released": released,
+            }.items()
         },
     }
 
