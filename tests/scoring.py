@@ -19,11 +19,12 @@ Move = Callable[[list[float]], list[float]]
 
 
 @cache
-def _scorer() -> Any:
-    path = (PARTS or Path()).parent / "tools" / "score_recognition.py"
+def scorer_named(name: str) -> Any:
+    """Return a scorer that comes with the parts, as a module; a test that needs one is skipped where it is not there."""
+    path = (PARTS or Path()).parent / "tools" / f"{name}.py"
     if not path.is_file():
-        pytest.skip("the scorer is not beside the parts")
-    spec = importlib.util.spec_from_file_location("score_recognition", path)
+        pytest.skip(f"{path.name} is not beside the parts")
+    spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
@@ -41,7 +42,7 @@ def scored(
     name: str, file: Path, found: Recognition, move: Move = list, family: str = "panel"
 ) -> dict[str, Any]:
     """Return recall, precision, faces and roles, and per kind (in the truth, found, matched); `move` says where the truth's points are."""
-    scorer, truth = _scorer(), truth_of(name, family)
+    scorer, truth = scorer_named("score_recognition"), truth_of(name, family)
     for feature in truth["features"]:
         for face in feature["faces"]:
             face["at"] = move(face["at"])
@@ -57,7 +58,7 @@ def scored(
 def faces_by_kind(family: str, name: str, file: Path) -> dict[str, set[int]]:
     """Return the tags of a file's faces by the kinds of features that the truth of a part has them in."""
     assert PARTS is not None
-    scorer = _scorer()
+    scorer = scorer_named("score_recognition")
     truth = json.loads((PARTS / family / f"{name}.truth.json").read_text())
     items, lost = scorer.truth_items(truth, scorer.Locator(scorer.read_faces(file)), 1e-3)
     assert not lost

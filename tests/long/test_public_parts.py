@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib.util
 import json
 from collections import Counter
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 
 from parts import PARTS, needs_parts
+from scoring import scorer_named
 from trunnion.pipeline import Engine
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(900), needs_parts]
@@ -66,19 +66,8 @@ def test_every_hole_axis_of_the_index_is_found(name) -> None:
     assert hole_axes(*found) == counted()[name]
 
 
-def mfcad_scorer() -> Any:
-    path = PUBLIC.parent.parent / "tools" / "score_mfcad.py"
-    if not path.is_file():
-        pytest.skip("the scorer is not beside the parts")
-    spec = importlib.util.spec_from_file_location("score_mfcad", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def test_faces_of_mfcad_are_what_their_labels_say_and_none_is_without_a_word() -> None:
-    scorer, right = mfcad_scorer(), Counter[bool]()
+    scorer, right = scorer_named("score_mfcad"), Counter[bool]()
     for file in sorted((PUBLIC / "mfcad").glob("*.step")):
         _, session = recognised(file)
         found, n_faces = session.recognition, session.part.n_faces
