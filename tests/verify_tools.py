@@ -98,6 +98,8 @@ FORMS = {
         stickout=20.0,
     ),
     "drill": tool_of("drill", diameter=8.0, point_angle=120.0),
+    "reamer": tool_of("reamer", diameter=8.0, lead=1.0, fit="H7"),
+    "tap": tool_of("tap", diameter=8.0, pitch=1.25, lead=3.0, neck_diameter=6.0),
     # A cone, an arc that bends outwards, a cylinder, and a cone that goes in again.
     "form": tool_of(
         "form",
@@ -187,6 +189,14 @@ def _cutting(tool):
             (0.0, r),
             0,
         )
+    if tool.form == "reamer":
+        edge = r - tool.lead
+        rows = [(edge, 0.0, 0.0, DOWN, 0.5 * DOWN), (r, tool.lead, 0.0, 0.5 * DOWN, 0.0)]
+        return rows, 0.0, top, (edge, r), 0
+    if tool.form == "tap":
+        # D - 1.082532 P, the basic minor diameter of ISO 68-1.
+        core = 0.5 * (tool.diameter - 1.0825317547305484 * tool.pitch)
+        return [(core, 0.0, 0.0, DOWN, 0.0)], 0.0, top, (core, core), 0
     if tool.form == "form":
         # The outline of FORMS: what a bulge of 0.09 between (4, 2) and (7, 5) is, by its half angle of 2 atan 0.09.
         half = 2.0 * math.atan(0.09)

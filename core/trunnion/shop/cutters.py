@@ -8,9 +8,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from trunnion.model.tool import BUTTON, Holder, Tool
+from trunnion.model.tool import BUTTON, REAMER, TAP, Holder, Tool
 from trunnion.shop.reading import CatalogueEntry, by_name, entries
-from trunnion.units import trimmed
+from trunnion.units import MM_PER_INCH, trimmed
 
 USES = (
     "face",
@@ -21,26 +21,33 @@ USES = (
     "drill",
     "spot",
     "countersink",
+    "ream",
+    "tap_through",
+    "tap_blind",
     "hole_mill",
     "narrow",
     "interrupted",
 )
 END_MILL = "end mill"
 """A form that the corner radius decides: flat, bull or ball."""
-KINDS = (END_MILL, "taper", "barrel", "t-slot", "drill", BUTTON, "form")
+KINDS = (END_MILL, "taper", "barrel", "t-slot", "drill", REAMER, TAP, BUTTON, "form")
+_WITHOUT_CORNER = ("drill", REAMER, TAP, "form")
+"""Forms whose entries give no corner radius."""
 _USE = {
     "taper": ("surface",),
     "barrel": ("surface",),
     "t-slot": ("undercut",),
     "drill": ("drill",),
+    REAMER: ("ream",),
     BUTTON: ("interrupted",),
 }
-"""What a form is for unless its entry says so."""
+"""What a form is for unless its entry says so; that of a tap says which holes it is for."""
 ISO_GROUPS = ("P", "M", "K", "N", "S", "H")
 _LARGEST = 1000.0
 """mm: no length of a cutter or holder is larger."""
 _FEWEST, _MOST_TEETH = 1, 20
 _STEEPEST_HELIX = 60.0
+_MOST_LEAD_THREADS, _MOST_PER_INCH = 20.0, 200.0
 _HALF_TURN, _QUARTER_TURN = 180.0, 90.0
 
 
@@ -48,9 +55,10 @@ _HALF_TURN, _QUARTER_TURN = 180.0, 90.0
 class Cutter:
     """A catalogue cutter with what it is made for: ISO 513 groups and uses.
 
-    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot`, `countersink`, `hole_mill`
-    (end mills for small holes), `narrow` (end mills for slots and pockets that no other one gets into) and `interrupted` (turning in the
-    gaps between bosses). An end mill for `hole_mill` or `narrow` alone is taken only where no other serves.
+    Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot`, `countersink`, `ream`,
+    `tap_through` and `tap_blind` (taps for holes that are open below, or that end), `hole_mill` (end mills for small holes), `narrow` (end
+    mills for slots and pockets that no other one gets into) and `interrupted` (turning in the gaps between bosses). An end mill for
+    `hole_mill` or `narrow` alone is taken only where no other serves.
     """
 
     tool: Tool
@@ -70,8 +78,9 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
 
     A file of tools holds `[tool.NAME]` tables of one cutter each and `[series.NAME]` tables whose `sizes` give one cutter for each
     diameter and corner radius, named `SERIES D12 R3` and what else its form needs: a taper's angle (A3), a barrel's radius (B85), how
-    thick a T-slot cutter is (H6); a drill is `SERIES D8.5`. `form` is one of `KINDS`. A user's series or tool replaces the program's of
-    the same name.
+    thick a T-slot cutter is (H6); a drill is `SERIES D8.5`, a reamer `SERIES D8`. A tap is named by its thread, `SERIES M6x1`, or
+    `SERIES UNC 1/4-20` where its size says `thread = "1/4-20 UNC"`. `form` is one of `KINDS`. A user's series or tool replaces the
+    program's of the same name.
     """
     found: list[tuple[int, CatalogueEntry]] = []
     for layer, group in entries("tools", user_folder):
@@ -121,12 +130,12 @@ def _holder(entry: CatalogueEntry) -> Holder:
 
 def _single(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> Cutter:
     kind = _kind(entry, END_MILL)
-    corner = 0.0 if kind in ("drill", "form") else entry.number("corner_radius", 0.0, _LARGEST)
+    corner = 0.0 if kind in _WITHOUT_CORNER else entry.number("corner_radius", 0.0, _LARGEST)
     tool = _tool(entry, entry, kind, name, corner, holders)
     cutter = Cutter(
         tool=tool,
         suits=_suits(entry),
-        use=entry.texts("use", _USE.get(kind, ("face", "rough", "finish")), USES),
+        use=_use(entry, kind, ("face", "rough", "finish")),
     )
     entry.done()
     return cutter
@@ -134,17 +143,16 @@ def _single(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> 
 
 def _series(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> list[Cutter]:
     kind = _kind(entry)
-    suits, use = _suits(entry), entry.texts("use", _USE.get(kind, ("rough", "finish")), USES)
+    suits, use = _suits(entry), _use(entry, kind, ("rough", "finish"))
     made = []
     for size in entry.tables("sizes"):
         diameter = size.number("diameter", 0.0, _LARGEST)
-        corners = (
-            (0.0,) if kind in ("drill", "form") else size.numbers("corner_radii", 0.0, _LARGEST)
-        )
+        corners = (0.0,) if kind in _WITHOUT_CORNER else size.numbers("corner_radii", 0.0, _LARGEST)
         for corner in corners:
             tool = _tool(entry, size, kind, f"{name} D{trimmed(diameter, 3)}", corner, holders)
+            full = f"{name} {_thread_name(size, tool)}" if kind == TAP else tool.name
             made.append(
-                Cutter(tool=replace(tool, name=tool.name + _size_name(tool)), suits=suits, use=use)
+                Cutter(tool=replace(tool, name=full + _size_name(tool)), suits=suits, use=use)
             )
         size.done()
     entry.done()
@@ -165,9 +173,23 @@ def _size_name(tool: Tool) -> str:
         "taper": f"{corner} A{trimmed(tool.taper_angle, 3)}",
         "barrel": f"{corner} B{trimmed(tool.barrel_radius, 3)}",
         "t-slot": f"{corner} H{trimmed(tool.flute_length, 3)}",
-        "drill": "",
-        "form": "",
+        **dict.fromkeys(_WITHOUT_CORNER, ""),
     }.get(tool.form, corner)
+
+
+def _thread_name(size: CatalogueEntry, tool: Tool) -> str:
+    """Return what a tap's size is called: its series and size in inches where that is given, else diameter and pitch in mm."""
+    thread = size.text("thread", "")
+    if not thread:
+        return f"M{trimmed(tool.diameter, 3)}x{trimmed(tool.pitch, 3)}"
+    inches, _, series = thread.rpartition(" ")
+    if not inches:
+        raise size.wrong(f"thread is a size and its series, such as 1/4-20 UNC; got {thread!r}")
+    return f"{series} {inches}"
+
+
+def _use(entry: CatalogueEntry, kind: str, default: tuple[str, ...]) -> tuple[str, ...]:
+    return entry.texts("use", None if kind == TAP else _USE.get(kind, default), USES)
 
 
 def _suits(entry: CatalogueEntry) -> tuple[str, ...]:
@@ -202,7 +224,7 @@ def _tool(
             shank_diameter=size.number("shank_diameter", 0.0, _LARGEST),
             stickout=stickout,
             gauge_length=stickout + holder.length,
-            teeth=series.count("teeth", _FEWEST, _MOST_TEETH),
+            teeth=_given(series, size, "teeth").count("teeth", _FEWEST, _MOST_TEETH),
             centre_cutting=series.flag("centre_cutting"),
             helix_angle=series.number("helix_angle", 0.0, _STEEPEST_HELIX),
             holder=holder,
@@ -233,9 +255,32 @@ def _shape(series: CatalogueEntry, size: CatalogueEntry, kind: str) -> dict[str,
                 "point_angle", 0.0, _HALF_TURN
             )
         }
+    if kind == REAMER:
+        return {
+            "lead": _given(series, size, "lead").number("lead", 0.0, _LARGEST),
+            "fit": _given(series, size, "fit").text("fit"),
+        }
+    if kind == TAP:
+        return _tap_shape(series, size)
     if kind == "form":
         return {"outline": size.rows("outline", 3, -1.0, _LARGEST)}
     return {}
+
+
+def _tap_shape(series: CatalogueEntry, size: CatalogueEntry) -> dict[str, Any]:
+    """Return pitch and lead of a tap: the pitch in mm or as threads per inch, the lead in mm or as so many threads."""
+    if size.has("threads_per_inch") == size.has("pitch"):
+        raise size.wrong("a tap gives its pitch, either as pitch in mm or as threads_per_inch")
+    pitch = (
+        MM_PER_INCH / size.number("threads_per_inch", 1.0, _MOST_PER_INCH)
+        if size.has("threads_per_inch")
+        else size.number("pitch", 0.0, _LARGEST)
+    )
+    given = _given(series, size, "lead")
+    if given.has("lead"):
+        return {"pitch": pitch, "lead": given.number("lead", 0.0, _LARGEST)}
+    threads = _given(series, size, "lead_threads").number("lead_threads", 0.0, _MOST_LEAD_THREADS)
+    return {"pitch": pitch, "lead": threads * pitch}
 
 
 def _given(series: CatalogueEntry, size: CatalogueEntry, field: str) -> CatalogueEntry:

@@ -140,6 +140,13 @@ def _spans_of(tool: Tool) -> list[Span]:
         ]
     if tool.form == "drill" and tool.point_length > 0.0:
         return [_line(0.0, 0.0, r, tool.point_length), _line(r, tool.point_length, r, top)]
+    if tool.form == "reamer":
+        lead = tool.lead
+        return [*_end_face(r - lead), _line(r - lead, 0.0, r, lead), _line(r, lead, r, top)]
+    if tool.form == "tap":
+        # Its threads lie outside of the core; the bore that it follows is at least as wide as that.
+        core = 0.5 * (tool.diameter - 1.25 * math.sqrt(0.75) * tool.pitch)
+        return [*_end_face(core), _line(core, 0.0, core, top)]
     if tool.form == "form":
         return _from_rows(tool.outline)
     return [*_end_face(r - c), *_arc(r - c, 0.0, r, c, r - c, c, c), _line(r, c, r, top)]

@@ -105,9 +105,9 @@ class Moves:
     @property
     def cutters(self) -> Floats:
         """Radius, corner radius and flute length of the cutter of each move (n, 3)."""
-        table = np.array([[t.radius, t.corner_radius, t.flute_length] for t in self.tools]).reshape(
-            -1, 3
-        )
+        table = np.array(
+            [[t.core_radius, t.corner_radius, t.flute_length] for t in self.tools]
+        ).reshape(-1, 3)
         return table[self.tool]
 
     @property

@@ -56,6 +56,8 @@ def test_the_catalogue_has_cutters_of_every_form():
         "barrel",
         "t-slot",
         "drill",
+        "reamer",
+        "tap",
         "button",
         "form",
     }
@@ -201,6 +203,8 @@ def test_a_user_adds_a_cutter_in_a_holder_of_his_own(tmp_path):
         ("barrel", "barrel_radius = 30", {"barrel_radius": 30.0}),
         ("t-slot", "", {}),
         ("drill", "point_angle = 118", {"point_angle": 118.0, "corner_radius": 0.0}),
+        ("reamer", 'lead = 0.5\nfit = "F8"', {"lead": 0.5, "fit": "F8"}),
+        ("tap", 'pitch = 0.25\nlead = 2.5\nuse = ["tap_blind"]', {"pitch": 0.25, "lead": 2.5}),
         (
             "form",
             "outline = [[1, 0, 0], [2, 1, -0.3], [3, 12, 0]]",
@@ -210,7 +214,11 @@ def test_a_user_adds_a_cutter_in_a_holder_of_his_own(tmp_path):
 )
 def test_a_user_adds_a_cutter_of_any_form(tmp_path, form, fields, said):
     text = TOOL.replace("diameter = 6", f'form = "{form}"\ndiameter = 6\n{fields}', 1)
-    text = text.replace("corner_radius = 1\n", "") if form in ("drill", "form") else text
+    text = (
+        text.replace("corner_radius = 1\n", "")
+        if form in ("drill", "reamer", "tap", "form")
+        else text
+    )
     tool = next(
         t
         for t in load_shop(folder(tmp_path, holders=HOLDER, tools=text)).tools
@@ -288,7 +296,7 @@ def test_a_user_without_a_folder_gets_the_programs_own(tmp_path):
         (
             "teeth = 3",
             'teeth = 3\nform = "saw"',
-            "form knows end mill, taper, barrel, t-slot, drill, button, form; got 'saw'",
+            "form knows end mill, taper, barrel, t-slot, drill, reamer, tap, button, form; got 'saw'",
         ),
         ("teeth = 3", 'teeth = 3\nform = "taper"', "taper_angle is missing"),
         (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -47,6 +48,25 @@ def _in(stock: LoadStock, made: Toolpath) -> Toolpath:
 def power(width: float) -> float:
     tooth = FEED / (TOOL.teeth * DATA.spindle)
     return cutting_power(ALUMINIUM, TOOL.diameter, tooth, 4.0, width, FEED)
+
+
+def test_a_reamer_takes_the_ring_that_its_bore_has_left_and_a_tap_nothing_of_its_core():
+    tools = {t.name: t for t in load_shop().tools}
+    reamer, tap = tools["RE-H7 D10"], tools["TAP-B M10x1.5"]
+
+    def down(tool):
+        builder = PathBuilder(tool, DATA, PlanningStock.of(BLANK, SETUP), SETUP, 2.0)
+        builder.rapid((30.0, 20.0, 50.0))
+        for x in (30.0, 30.001):
+            builder.line((x, 20.0, -10.0 - tool.lead), FEED)
+        return builder.finished()
+
+    bored = PlanningStock.of(BLANK, SETUP, 0.05).after(down(mill(9.8)), mill(9.8))
+    gone = float(np.sum(bored.field - bored.after(down(reamer), reamer).field)) * 0.05**2
+    assert gone == approx(math.pi / 4 * (10.0**2 - 9.8**2) * 10.0, rel=0.1)
+    narrow = PlanningStock.of(BLANK, SETUP, 0.05).after(down(mill(8.4)), mill(8.4))
+    deep = replace(tap, lead=0.1)
+    assert np.abs(narrow.after(down(deep), deep).field - narrow.field).max() < 1e-9
 
 
 def test_a_slot_is_a_full_width():

@@ -74,6 +74,10 @@ PLUNGES = {
     + 2 / 3 * math.pi * 0.5**3,
     "drill": math.pi * 16 * (6 - 4 / math.tan(math.radians(60.0)))
     + math.pi * 16 / 3 * 4 / math.tan(math.radians(60.0)),
+    # A cylinder without the ring that its chamfer leaves: of a triangle of 1 by 1, by Pappus.
+    "reamer": math.pi * 16 * 6 - 0.5 * math.tau * (4 - 1 / 3),
+    # The core of M8x1.25.
+    "tap": math.pi * (6.6468 / 2) ** 2 * 6,
 }
 
 

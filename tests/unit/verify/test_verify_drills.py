@@ -39,3 +39,15 @@ def test_a_drill_is_allowed_its_whole_circle_at_the_feed_of_its_data():
     allowed = allowed_load(drilling(DRILL), SHOP.material("EN AW-7075"))
     assert allowed.rate == approx(math.pi / 4 * 100.0 * 1200.0 / 1000.0)
     assert allowed.chip == approx(math.sin(math.radians(70.0)) * 1200.0 / (2 * 6000.0))
+
+
+def test_a_reamers_chip_is_as_thick_as_its_lead_of_45_degrees_makes_it():
+    reamer = next(t for t in SHOP.tools if t.name == "RE-H7 D10")
+    assert drill_shares((drilling(reamer),)) == approx([math.sqrt(0.5)])
+
+
+def test_a_reamer_is_allowed_the_ring_of_its_depth_of_cut():
+    reamer = next(t for t in SHOP.tools if t.name == "RE-H7 D10")
+    ring = math.pi / 4 * (10.0**2 - 9.8**2)
+    allowed = allowed_load(replace(drilling(reamer), depth=0.1, width=10.0), None)
+    assert allowed.rate == approx(ring * 1200.0 / 1000.0)

@@ -5,6 +5,8 @@ from trunnion.model.tool.holder import Holder as Holder
 from trunnion.model.tool.insert import CORNERS as CORNERS
 from trunnion.model.tool.insert import Insert as Insert
 from trunnion.model.tool.insert import TurningTool as TurningTool
+from trunnion.model.tool.lead import REAMER as REAMER
+from trunnion.model.tool.lead import TAP as TAP
 from trunnion.model.tool.rotating import BUTTON as BUTTON
 from trunnion.model.tool.rotating import FORMS as FORMS
 from trunnion.model.tool.rotating import PLAIN_FORMS as PLAIN_FORMS

@@ -10,9 +10,23 @@ from typing import Any
 from trunnion import tolerance
 from trunnion.model.tool.drill import point_height, wrong_drill
 from trunnion.model.tool.holder import Holder
+from trunnion.model.tool.lead import (
+    REAMER,
+    REAMER_EDGE,
+    TAP,
+    basic_minor_diameter,
+    wrong_reamer,
+    wrong_tap,
+)
 from trunnion.model.tool.mill import MILLS
+from trunnion.settings import added
 
-CHECKS: Mapping[str, Callable[[Tool], str]] = {**MILLS, "drill": wrong_drill}
+CHECKS: Mapping[str, Callable[[Tool], str]] = {
+    **MILLS,
+    "drill": wrong_drill,
+    REAMER: wrong_reamer,
+    TAP: wrong_tap,
+}
 """What the numbers of each form lack, in words, or nothing."""
 FORMS = tuple(CHECKS)
 BUTTON = "button"
@@ -35,6 +49,10 @@ class Tool:
     - barrel: a round tip of `corner_radius`, tangent to a flank of `barrel_radius` whose widest circle is `diameter`.
     - t-slot: a disc of `diameter`, as thick as the flutes are long, rounded below and above by `corner_radius`; it cuts upwards too.
     - drill: a cone of `point_angle` (degrees, over both sides) and a cylinder of `diameter`.
+    - reamer: a cylinder of `diameter` below which a `lead` (mm high) is chamfered at 45 degrees; `fit` is the tolerance class (ISO 286-1,
+      "H7") of the holes that it makes.
+    - tap: a thread of the nominal `diameter` and of `pitch` (mm), whose lowest threads are chamfered over the height `lead`. What it is taken
+      to cut is the cylinder of its `core_diameter`: in a bore of that size it takes nothing off.
     - button: a round turning insert of `diameter` in a neutral holder, which the locked spindle holds while the table brings the work past:
       what is kept clear of it, and what it is taken to cut, is a ball end of `diameter`.
     - form: `outline`, points (r, z, bulge) from the tip to the top of the flutes; the bulge (tan of a quarter of the arc's angle, positive
@@ -61,6 +79,9 @@ class Tool:
     barrel_radius: float = 0.0
     point_angle: float = 180.0
     outline: tuple[tuple[float, float, float], ...] = ()
+    pitch: float = added(0.0, written=False)
+    lead: float = added(0.0, written=False)
+    fit: str = added("", written=False)
 
     def __post_init__(self) -> None:
         if self.form not in FORMS:
@@ -94,12 +115,16 @@ class Tool:
 
     @property
     def point_length(self) -> float:
-        """Height of a drill's point; 0 for other forms."""
-        return point_height(self.diameter, self.point_angle) if self.form == "drill" else 0.0
+        """Height above the tip from which on the tool makes its whole diameter: a drill's point, the lead of a reamer or tap; 0 for other
+        forms."""
+        if self.form == "drill":
+            return point_height(self.diameter, self.point_angle)
+        return self.lead
 
     @property
     def full_width_height(self) -> float:
-        """Height above the tip from which on a cylinder of its radius is all inside of it: a drill's point, a form's widest place."""
+        """Height above the tip from which on a cylinder of its radius is all inside of it: a drill's point, a lead, a form's widest
+        place."""
         if self.form == "form":
             widest = max(r for r, _, _ in self.outline)
             return next(z for r, z, _ in self.outline if r == widest)
@@ -119,9 +144,29 @@ class Tool:
         return self.diameter / 2
 
     @property
+    def core_diameter(self) -> float:
+        """Diameter of what the tool is taken to cut: of a tap the basic minor diameter of its thread, of others their diameter."""
+        if self.form == TAP:
+            return basic_minor_diameter(self.diameter, self.pitch)
+        return self.diameter
+
+    @property
+    def core_radius(self) -> float:
+        """Half the core's diameter."""
+        return self.core_diameter / 2
+
+    @property
+    def edge_angle(self) -> float:
+        """Angle in degrees between the cutting edges and the axis of a tool that cuts along it: half a drill's point angle, 45 on a
+        reamer's lead; 0 for other forms."""
+        if self.form == "drill":
+            return 0.5 * self.point_angle
+        return REAMER_EDGE if self.form == REAMER else 0.0
+
+    @property
     def reach(self) -> float:
         """How deep below the surroundings the cutter may go before something thicker than it follows."""
-        if self.shank_diameter <= self.diameter and self.neck_diameter <= self.diameter:
+        if max(self.shank_diameter, self.neck_diameter) <= self.core_diameter:
             return self.stickout
         return self.neck_length
 
@@ -165,9 +210,9 @@ class Tool:
         wider = [
             (z0, max(r0, r1))
             for z0, r0, _, r1 in self.profile()
-            if max(r0, r1) > self.radius + tolerance.COINCIDENT
+            if max(r0, r1) > self.core_radius + tolerance.COINCIDENT
         ]
-        return [(0.0, self.radius), *wider]
+        return [(0.0, self.core_radius), *wider]
 
     def radius_at(self, height: float) -> float:
         """Return the radius of the cutting part at a height above the tip."""
@@ -193,7 +238,8 @@ class Tool:
         return self.holder.name
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the tool as `NAME.tools.json` has it."""
+        """Return the tool as `NAME.tools.json` has it; pitch, lead and fit stand there where it has them."""
+        shape = {"pitch": self.pitch, "lead": self.lead, "fit": self.fit}
         return {
             "number": self.number,
             "name": self.name,
@@ -214,4 +260,5 @@ class Tool:
             "holder": [list(row) for row in self.holder.rows],
             "holder_name": self.holder.name,
             "description": self.description,
+            **{name: value for name, value in shape.items() if value},
         }

@@ -65,8 +65,9 @@ def drilling_thrust(material: Material, tool: Tool, feed_per_tooth: float) -> fl
 
 
 def drill_chip(tool: Tool, feed_per_tooth: float) -> float:
-    """Return the chip thickness of a drill in mm: h = fz sin(kappa), kappa half its point angle."""
-    return feed_per_tooth * math.sin(math.radians(0.5 * tool.point_angle))
+    """Return the chip thickness of a tool that cuts along its axis in mm: h = fz sin(kappa), kappa the angle of its edges to the axis, of a
+    drill half its point angle."""
+    return feed_per_tooth * math.sin(math.radians(tool.edge_angle))
 
 
 def specific_force(material: Material, chip: Floats) -> Floats:

@@ -21,7 +21,7 @@ from trunnion.plan.cutting.optimize import recomputed
 from trunnion.plan.library.teach import kinds_of
 from trunnion.plan.manual.operation_change import OperationChange, with_speeds
 from trunnion.plan.repair.contract import numbered
-from trunnion.plan.repair.tool_change import ROUGH_FORMS, SHAPES, with_cutter
+from trunnion.plan.repair.tool_change import ROUGH_FORMS, SHAPES, own_shape, with_cutter
 from trunnion.plan.tool_choice import depth_reached
 from trunnion.settings import Value, checked, choose
 from trunnion.shop import Shop
@@ -220,12 +220,7 @@ def refusal(tool: Tool, planned: Tool, operation: Operation) -> str:
 def _same_foot(tool: Tool, now: Tool, *, finishes: bool) -> bool:
     """Return whether a cutter leaves the shape that another one does at its foot."""
     if now.form in SHAPES or tool.form in SHAPES:
-        return (tool.form, tool.diameter, tool.point_angle, tool.outline) == (
-            now.form,
-            now.diameter,
-            now.point_angle,
-            now.outline,
-        )
+        return own_shape(tool) == own_shape(now)
     if not finishes and now.form in ROUGH_FORMS:
         return tool.form in ROUGH_FORMS
     if tool.form != now.form:

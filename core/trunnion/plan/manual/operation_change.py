@@ -11,13 +11,13 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.spindle import surface_speed
-from trunnion.model.tool import Tool
+from trunnion.model.tool import TAP, Tool
 from trunnion.plan.cutting.drilling import AXIAL
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.cutting.optimize import recomputed
 from trunnion.plan.cutting.power import NEWTON_METRES, drilling_power, tool_power
 from trunnion.plan.repair.contract import numbered
-from trunnion.plan.repair.tool_change import SHAPES, with_cutter
+from trunnion.plan.repair.tool_change import SHAPES, own_shape, with_cutter
 from trunnion.settings import Value, checked, choose, setting, settings
 from trunnion.shop import Shop
 from trunnion.units import trimmed
@@ -140,6 +140,11 @@ def _tool_named(name: str, operation: Operation, material: Material, shop: Shop)
     if (found.tool.form in SHAPES or now.form in SHAPES) and found.tool.form != now.form:
         raise BadInput(
             f"{operation.id}: {name} can't do the work of {now.name}: a {now.form} tool is needed"
+        )
+    if now.form == TAP and own_shape(found.tool) != own_shape(now):
+        raise BadInput(
+            f"{operation.id}: {name} cuts another thread than {now.name}: choose a tap of D {trimmed(now.diameter, 3)} "
+            f"and pitch {trimmed(now.pitch, 3)} mm"
         )
     return found.tool
 

@@ -12,12 +12,12 @@ from trunnion import tolerance
 from trunnion.findings import Fix
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.model.tool import BUTTON, Tool
+from trunnion.model.tool import BUTTON, REAMER, TAP, Tool
 from trunnion.plan.freeform.keys import EARLIER
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.tool_choice import depth_reached
 
-SHAPES = ("drill", "form", BUTTON)
+SHAPES = ("drill", REAMER, TAP, "form", BUTTON)
 """Forms that leave their own shape in the part, whatever they cut."""
 MARGIN = 0.5
 """mm that a tool has to reach farther than what was measured."""
@@ -73,15 +73,16 @@ def next_tool(
     return min(found, key=lambda t: (-t.diameter, depth_reached(t), t.name), default=None)
 
 
+def own_shape(tool: Tool) -> tuple[object, ...]:
+    """Return what of a tool stays in the part where its form is one of `SHAPES`."""
+    return (tool.form, tool.diameter, tool.point_angle, tool.outline, tool.pitch, tool.fit)
+
+
 def _same_foot(tool: Tool, now: Tool, finishes: bool) -> bool:
     """Return whether a cutter leaves the same shape at its foot: a ball's is its radius, and roughing leaves none. A drill's or a form
     cutter's shape is that of the hole."""
     if now.form in SHAPES:
-        return (tool.diameter, tool.point_angle, tool.outline) == (
-            now.diameter,
-            now.point_angle,
-            now.outline,
-        )
+        return own_shape(tool) == own_shape(now)
     if not finishes:
         return tool.corner_radius <= max(now.corner_radius, tolerance.COINCIDENT)
     return now.form == "ball" or abs(tool.corner_radius - now.corner_radius) <= tolerance.COINCIDENT

@@ -19,7 +19,7 @@ from trunnion.model.material import Material
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.power import DRILL, drill_chip, specific_force
+from trunnion.plan.cutting.power import drill_chip, specific_force
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.motion.easing import PIECE, in_pieces
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -79,17 +79,17 @@ def load_of(
     cuts = (volume > 0.0) & (pieces.motion != Motion.RAPID)
     # Each piece's volume goes at its own feed: a neighbour that is eased doesn't count at the feed of this one.
     section, square, flow = (
-        np.where(cuts, _by_length(pieces, taken, tool.diameter), 0.0)
+        np.where(cuts, _by_length(pieces, taken, tool.core_diameter), 0.0)
         for taken in (volume, squares, volume * np.where(cuts, pieces.feed, 0.0))
     )
     width = _width(section, square, tool)
     feed = np.divide(flow, section, out=np.zeros(len(pieces)), where=section > 0.0)
     tooth = feed / (tool.teeth * data.spindle)
-    if tool.form == DRILL:
+    if tool.edge_angle > 0.0:
         share = drill_chip(tool, 1.0)
         mean, thickest = tooth * share, np.full(len(pieces), share)
     else:
-        mean = tooth * mean_share(width, tool.diameter)
+        mean = tooth * mean_share(width, tool.core_diameter)
         thickest = _thickest_share(pieces, tool, volume, squares, cuts)
     rate = flow / MM_PER_METRE
     power = rate * specific_force(material, mean) / (SECONDS_PER_MINUTE * WATTS_PER_KILOWATT)
@@ -104,7 +104,7 @@ def _thickest_share(
     way."""
     length = np.maximum(pieces.lengths(), tolerance.COINCIDENT)
     here = _width(np.where(cuts, volume / length, 0.0), np.where(cuts, squares / length, 0.0), tool)
-    return np.asarray(np.sin(np.minimum(contact_arc(here, tool.diameter), 0.5 * math.pi)))
+    return np.asarray(np.sin(np.minimum(contact_arc(here, tool.core_diameter), 0.5 * math.pi)))
 
 
 def contact_arc(width: Floats, diameter: float) -> Floats:
@@ -124,7 +124,7 @@ def _width(section: Floats, square: Floats, tool: Tool) -> Floats:
     Of heights h it is (sum of h)^2 / (sum of h^2), that of one even layer: thin films beside a cut don't widen it.
     """
     width = np.divide(section**2, square, out=np.zeros(len(section)), where=square > 0.0)
-    return np.clip(width, section / tool.flute_length, tool.diameter)
+    return np.clip(width, section / tool.flute_length, tool.core_diameter)
 
 
 def _by_length(pieces: Toolpath, taken: Floats, window: float) -> Floats:

@@ -108,7 +108,12 @@ class PlanningStock:
         made = self.working()
         made.lower(path, tool, progress)
         cut = digest(
-            self.digest, path.position, path.motion, path.centre, tool.radius, tool.corner_radius
+            self.digest,
+            path.position,
+            path.motion,
+            path.centre,
+            tool.core_radius,
+            tool.corner_radius,
         )
         if tool.full_width_height > 0.0:
             cut = digest(cut, tool.full_width_height)
@@ -186,7 +191,7 @@ class PlanningStock:
         made = replace(near, field=field, cell=near.cell / parts, centred=centred, cuts=())
         corners = np.array(made.box())
         for path, tool in progress.each(cuts):
-            around = tool.radius + made.cell
+            around = tool.core_radius + made.cell
             meets = (path.position[:, :2].max(axis=0) > corners[0] - around) & (
                 path.position[:, :2].min(axis=0) < corners[1] + around
             )
@@ -218,10 +223,10 @@ class PlanningStock:
     ) -> tuple[Floats, Floats]:
         """Do as `lower`, and return also the height that each block takes off, squared and summed over the area in plan: (n,) mm4."""
         starts, ends, rows, error = cutting_chords(path, tool)
-        radius, gone = self.widths * (tool.radius - error), np.empty((len(starts), 2))
+        radius, gone = self.widths * (tool.core_radius - error), np.empty((len(starts), 2))
         if len(starts):
             ends_in_plan = np.vstack([starts, ends])[:, :2]
-            around = tool.radius + 2.0 * self.cell
+            around = tool.core_radius + 2.0 * self.cell
             self._look(ends_in_plan.min(axis=0) - around, ends_in_plan.max(axis=0) + around)
         # A cell's furthest corner counts: with a cutter as much wider its middle does.
         wider = heightfield.HALF_DIAGONAL * self.cell if self.centred else 0.0

@@ -31,11 +31,11 @@ class StockOverFlutes:
 
     def may_be_there(self, tip: Floats) -> bool:
         """Return whether anything may stand over the flutes of the tool at a tip (3,), whatever its own path has cut."""
-        return self.stock.height(tip, tip, self.tool.radius) > tip[2] + self.tool.flute_length
+        return self.stock.height(tip, tip, self.tool.core_radius) > tip[2] + self.tool.flute_length
 
     def top(self, tip: Floats, path: Toolpath) -> float:
         """Return the height (mm) of what stands over the flutes of the tool at a tip (3,) after its own path; -inf where nothing does."""
-        radius = self.tool.radius - INSIDE
+        radius = self.tool.core_radius - INSIDE
         if radius <= 0.0:
             return -math.inf
         points = tip[:2] + circle(radius)

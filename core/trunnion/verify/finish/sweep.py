@@ -289,7 +289,7 @@ def flutes_of(moves: Moves) -> Flutes:
         last=np.array(last, dtype=np.int64),
         endless=np.array(endless, dtype=np.int64),
         start=np.array(start, dtype=np.int64),
-        middle=np.array([min(t.radius, t.flute_length / 2) for t in moves.tools]),
+        middle=np.array([min(t.core_radius, t.flute_length / 2) for t in moves.tools]),
     )
 
 

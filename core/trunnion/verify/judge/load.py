@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.model.material import Material
 from trunnion.model.motion.program import STOPPED, ProgramSection
+from trunnion.model.tool import Tool
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 from trunnion.verify.motion import Moves
 from trunnion.verify.stock import StockRun
@@ -60,7 +61,9 @@ def load_of(
     speed (n,) mm/s of the tip; `cell` mm of the stock. Without a material there is no power; while the spindle stands there is no chip, no
     power and no torque, whatever the tool is pushed through.
     """
-    radius = np.array([t.radius for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
+    radius = (
+        np.array([t.core_radius for t in moves.tools])[moves.tool] if len(moves) else np.zeros(0)
+    )
     teeth = (
         np.array([s.cutter.teeth for s in sections])[moves.section] if len(moves) else np.zeros(0)
     )
@@ -138,14 +141,15 @@ def insert_chip(area: Floats, radius: Floats, depth: Floats) -> Floats:
 
 
 def drill_shares(sections: Sequence[ProgramSection]) -> Floats:
-    """Return for each section's tool the chip thickness over the feed per tooth where it is a drill, sin(kappa) with kappa half its point
-    angle (its edges cut all round, at one thickness); 0 for other tools."""
-    return np.array(
-        [
-            math.sin(math.radians(0.5 * s.cutter.point_angle)) if s.cutter.form == "drill" else 0.0
-            for s in sections
-        ]
-    )
+    """Return for each section's tool the chip thickness over the feed per tooth where it cuts along its axis, sin(kappa) with kappa half a
+    drill's point angle and 45 degrees at a reamer's lead (their edges cut all round, at one thickness); 0 for other tools."""
+    return np.array([_axial_share(s.cutter) for s in sections])
+
+
+def _axial_share(tool: Tool) -> float:
+    if tool.form == "drill":
+        return math.sin(math.radians(0.5 * tool.point_angle))
+    return math.sqrt(0.5) if tool.form == "reamer" else 0.0
 
 
 def least_angle(area: Floats, radius: Floats, flute: Floats) -> Floats:

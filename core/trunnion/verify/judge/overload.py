@@ -72,9 +72,10 @@ def allowed_load(section: ProgramSection, material: Material | None) -> AllowedL
         )
     share = float(drill_shares((section,))[0])
     if share > 0.0:
-        # A drill cuts its whole circle at the feed that was chosen for it.
+        # A ring as wide as the depth of cut, at the feed that was chosen: of a drill, whose depth is its radius, the whole circle.
+        depth = min(section.depth or tool.radius, tool.radius)
         turned = 0.0 if section.spindle_stopped else feed / (tool.teeth * section.spindle)
-        rate = 0.25 * math.pi * tool.diameter**2 * feed / MM_PER_METRE
+        rate = math.pi * (tool.diameter - depth) * depth * feed / MM_PER_METRE
         return AllowedLoad(rate=rate or math.inf, chip=share * turned or math.inf)
     area, angle = section.width * section.depth, _angle(section.width, tool.diameter)
     per_tooth = 0.0 if section.spindle_stopped else feed / (tool.teeth * section.spindle)

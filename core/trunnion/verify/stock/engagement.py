@@ -78,7 +78,7 @@ def probes_of(moves: Moves) -> Probes:
     angles = (np.arange(DIRECTIONS) + 0.5) / DIRECTIONS * math.pi - math.pi / 2
     rings = np.array([rings_of(tool) for tool in moves.tools]).reshape(-1, RINGS, 2)
     flute = np.array([flute_of(tool) for tool in moves.tools]).reshape(-1, FLUTE_STEPS, 2)
-    apart = APART * np.array([tool.radius for tool in moves.tools])[moves.tool]
+    apart = APART * np.array([tool.core_radius for tool in moves.tools])[moves.tool]
     count = np.where(
         moves.rapid, 0, np.clip(np.ceil(moves.length / np.maximum(apart, 1e-9)), 1, MOST_PROBES)
     ).astype(np.int64)
@@ -112,7 +112,9 @@ def _widest(probes: Probes, moves: Moves, owner: Ints, angle: Floats) -> tuple[F
     """Return how wide the cut of each move is over a diameter's length where it is widest (n,) mm, and how many times as wide as on the
     mean of the move that is (n,)."""
     n, count = len(moves), np.maximum(np.diff(probes.start), 1)
-    diameter = np.array([tool.diameter for tool in moves.tools])[moves.tool] if n else np.zeros(0)
+    diameter = (
+        np.array([tool.core_diameter for tool in moves.tools])[moves.tool] if n else np.zeros(0)
+    )
     several = np.clip(np.ceil(diameter * count / np.maximum(moves.length, 1e-9)), 1, count).astype(
         np.int64
     )

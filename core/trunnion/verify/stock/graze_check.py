@@ -133,7 +133,7 @@ def recheck(
     in_material = _in_material(stock, positions, frame, sweep, row)
     if in_material.any():
         k = int(np.flatnonzero(in_material)[np.argmin(rho[in_material])])
-        depth[row] = max(depth[row], float(moves.tools[moves.tool[row]].radius - rho[k]))
+        depth[row] = max(depth[row], float(moves.tools[moves.tool[row]].core_radius - rho[k]))
         position[row] = positions[k]
 
 
@@ -152,7 +152,7 @@ def _positions(moves: Moves, row: int, points: Floats, around: float) -> tuple[F
     lowest = np.full(len(points), np.inf)
     sloped = length > 0.0 and start[2] != end[2]
     # On a slope the point is met all the while it is under the cutter, lowest nearly at the end of that.
-    reach = np.sqrt(np.maximum((tool.radius + around) ** 2 - least**2, 0.0)) / max(
+    reach = np.sqrt(np.maximum((tool.core_radius + around) ** 2 - least**2, 0.0)) / max(
         length, tolerance.PARAMETRIC
     )
     for step in np.linspace(-1.0, 1.0, SHARES) if sloped else [0.0]:
@@ -163,10 +163,10 @@ def _positions(moves: Moves, row: int, points: Floats, around: float) -> tuple[F
         tip = start[2] + share * (end[2] - start[2]) if length > 0.0 else min(start[2], end[2])
         # The cutter made smaller by what is allowed: what it still meets, the rapid enters deeper than that.
         height = tip + lowest_height(tool, rho + allowed) + allowed
-        lowest = np.minimum(lowest, np.where(rho < tool.radius - allowed, height, np.inf))
+        lowest = np.minimum(lowest, np.where(rho < tool.core_radius - allowed, height, np.inf))
     if sloped and around > 0.0:
         lowest = lowest - abs(end[2] - start[2]) * np.minimum(
-            (around + tool.radius / (SHARES - 1)) / length, 1.0
+            (around + tool.core_radius / (SHARES - 1)) / length, 1.0
         )
     return np.column_stack([points, lowest]), least
 

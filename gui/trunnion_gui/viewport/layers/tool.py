@@ -114,6 +114,10 @@ def cutter_outline(tool: Tool) -> Outline:
         ]
     if tool.form == "drill":
         return [(0.0, 0.0), (r, tool.point_length), (r, top)]
+    if tool.form == "reamer":
+        return [(0.0, 0.0), (r - tool.lead, 0.0), (r, tool.lead), (r, top)]
+    if tool.form == "tap":
+        return [(0.0, 0.0), (tool.core_radius, 0.0), (tool.core_radius, top)]
     if tool.form == "t-slot":
         return [
             (0.0, 0.0),
