@@ -9,14 +9,18 @@ from pathlib import Path
 from typing import TypeVar
 
 from trunnion.findings import BadInput
+from trunnion.model.hole_limits import Limits
 from trunnion.model.material import DrillingTable, Machine, Material, TurningTable
+from trunnion.model.screw_thread import ScrewThread
 from trunnion.model.tool import Tool, TurningTool
 from trunnion.settings import digest
 from trunnion.shop.cutters import Cutter, load_cutters, load_holders
 from trunnion.shop.drilling import load_drilling
+from trunnion.shop.fits import FitTables, load_fits
 from trunnion.shop.machines import load_machines
 from trunnion.shop.materials import load_materials
 from trunnion.shop.plans import TypicalPlan, load_plans
+from trunnion.shop.screw_threads import ThreadTables, load_threads
 from trunnion.shop.turning import load_turning, load_turning_data
 
 T = TypeVar("T")
@@ -27,7 +31,8 @@ class Shop:
     """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`).
 
     `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters. `drilling` says by
-    ISO 513 group or by material what drills bear, `turning_data` what inserts do.
+    ISO 513 group or by material what drills bear, `turning_data` what inserts do; `fits` and `threads` have
+    the limits of holes and screw threads.
     """
 
     cutters: tuple[Cutter, ...]
@@ -37,6 +42,8 @@ class Shop:
     turning: tuple[TurningTool, ...] = ()
     drilling: Mapping[str, DrillingTable] = field(default_factory=dict)
     turning_data: Mapping[str, TurningTable] = field(default_factory=dict)
+    fits: FitTables = field(default_factory=FitTables)
+    threads: ThreadTables = field(default_factory=ThreadTables)
 
     @property
     def tools(self) -> tuple[Tool, ...]:
@@ -55,6 +62,8 @@ class Shop:
             self.turning,
             self.drilling,
             self.turning_data,
+            self.fits,
+            self.threads,
         )
 
     def tools_for(self, iso_group: str, use: str) -> tuple[Tool, ...]:
@@ -74,6 +83,15 @@ class Shop:
                 "to the drilling folder"
             )
         return found
+
+    def fit_limits(self, text: str, diameter: float) -> Limits:
+        """Return the limits of a hole of a nominal diameter (mm) by its tolerance class (ISO 286-1, "H7") or by deviations in mm
+        ("+0.021/0", "+-0.02"); raise `BadInput` with what is known."""
+        return self.fits.limits(text, diameter)
+
+    def thread(self, text: str) -> ScrewThread:
+        """Return the screw thread that a text names ("M6", "M6x0.75", "1/4-20 UNC"); raise `BadInput` with what is known."""
+        return self.threads.thread(text)
 
     def turning_for(self, material: Material) -> TurningTable:
         """Return what inserts bear in a material: its own table, else that of its group; raise `BadInput` where there is neither."""
@@ -109,8 +127,8 @@ class Shop:
 def load_shop(user_folder: Path | None = None) -> Shop:
     """Return the catalogues, checked; raise `BadInput` with file, entry and field of the first fault.
 
-    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `machines`, `plans`, each with
-    TOML files) and adds entries or replaces those of the same name. What is missing there is not needed.
+    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `machines`, `plans`,
+    `fits`, `threads`, each with TOML files) and adds entries or replaces those of the same name. What is missing there is not needed.
     """
     return Shop(
         cutters=load_cutters(load_holders(user_folder), user_folder),
@@ -120,6 +138,8 @@ def load_shop(user_folder: Path | None = None) -> Shop:
         turning=load_turning(user_folder),
         drilling=load_drilling(user_folder),
         turning_data=load_turning_data(user_folder),
+        fits=load_fits(user_folder),
+        threads=load_threads(user_folder),
     )
 
 

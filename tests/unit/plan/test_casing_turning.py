@@ -21,7 +21,7 @@ from trunnion.plan.blank import ring_turned_outline
 from trunnion.plan.casing.turning_route import held_height, held_straight, lathe_for
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.turning.operations import SetupTurning
-from trunnion.plan.turning.reach import Limits
+from trunnion.plan.turning.reach import TurningLimits
 from trunnion.plan.turning.settings import TurningSettings
 from trunnion.shop import load_shop
 from turned_rings import SETUP
@@ -110,7 +110,7 @@ def test_a_blank_without_a_bore_has_no_inside_to_turn():
         setup=SETUP,
         part=RING,
         stock=shapely.box(0.0, 0.0, 125.0, 102.0),
-        limits=Limits(floor=8.0, lowest=8.0),
+        limits=TurningLimits(floor=8.0, lowest=8.0),
         tools=shop.turning,
         material=material,
         table=shop.turning_for(material),

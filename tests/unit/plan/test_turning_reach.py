@@ -16,7 +16,7 @@ from trunnion.plan.turning.reach import (
     HOLDER_CLEARANCE,
     NOSE_CHORD,
     TURNED_FREE,
-    Limits,
+    TurningLimits,
     ceiling_of,
     reach_of,
     touching,
@@ -46,7 +46,7 @@ def reach(name, side, lowest, part=RING, stock=BLANK, **choices):
         turning_tool(name),
         TurningSide(side),
         ring_area(part),
-        Limits(floor=min(lowest, HELD), lowest=lowest),
+        TurningLimits(floor=min(lowest, HELD), lowest=lowest),
         ring_area(stock),
         **choices,
     )
@@ -115,7 +115,7 @@ def test_any_stepped_shaft_is_kept(steps, name):
         turning_tool(name),
         TurningSide.OUTSIDE,
         shapely.Polygon(part).buffer(0.0),
-        Limits(floor=-200.0, lowest=-200.0),
+        TurningLimits(floor=-200.0, lowest=-200.0),
         shapely.box(40.0, 0.0, 95.0, heights[-1]),
     )
     left = found.cut_from(shapely.box(40.0, 0.0, 95.0, heights[-1]))

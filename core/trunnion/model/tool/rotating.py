@@ -51,8 +51,8 @@ class Tool:
     - drill: a cone of `point_angle` (degrees, over both sides) and a cylinder of `diameter`.
     - reamer: a cylinder of `diameter` below which a `lead` (mm high) is chamfered at 45 degrees; `fit` is the tolerance class (ISO 286-1,
       "H7") of the holes that it makes.
-    - tap: a thread of the nominal `diameter` and of `pitch` (mm), whose lowest threads are chamfered over the height `lead`. What it is taken
-      to cut is the cylinder of its `core_diameter`: in a bore of that size it takes nothing off.
+    - tap: a thread of the nominal `diameter` and of `pitch` (mm), whose lowest threads are chamfered over the height `lead`. What it is
+      taken to cut is the cylinder of its `core_diameter`: in a bore of that size it takes nothing off.
     - button: a round turning insert of `diameter` in a neutral holder, which the locked spindle holds while the table brings the work past:
       what is kept clear of it, and what it is taken to cut, is a ball end of `diameter`.
     - form: `outline`, points (r, z, bulge) from the tip to the top of the flutes; the bulge (tan of a quarter of the arc's angle, positive

@@ -26,7 +26,7 @@ from trunnion.plan.setups import SetupSettings, work_offset
 from trunnion.plan.turning.drive import RevolvedDrive
 from trunnion.plan.turning.meridian import meridian_in, on_one_axis, seen_from, turned_to
 from trunnion.plan.turning.operations import RULES, SetupTurning
-from trunnion.plan.turning.reach import Limits
+from trunnion.plan.turning.reach import TurningLimits
 from trunnion.plan.turning.settings import TurningSettings
 from trunnion.progress import Progress
 from trunnion.recognize.casing.kinds import PROFILE
@@ -185,7 +185,9 @@ def _planned(
             setup=setup,
             part=turned_here(target, blank.frame, setup),
             stock=stock,
-            limits=Limits(floor=lowest if upright else float(stock.bounds[1]), lowest=lowest),
+            limits=TurningLimits(
+                floor=lowest if upright else float(stock.bounds[1]), lowest=lowest
+            ),
             tools=job.shop.turning,
             material=material,
             table=job.shop.turning_for(material),

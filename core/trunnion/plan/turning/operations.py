@@ -16,7 +16,7 @@ from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.cutting.turning import TURNING_FINISH, TURNING_ROUGH, turning_data
 from trunnion.plan.turning.contour_spans import contour_spans, stock_after
 from trunnion.plan.turning.drive import LEAST_AREA
-from trunnion.plan.turning.reach import Limits, TurningReach, reach_of
+from trunnion.plan.turning.reach import TurningLimits, TurningReach, reach_of
 from trunnion.plan.turning.settings import MOST_LAYERS, TurningSettings
 from trunnion.plan.turning.tools import bars_that_fit, candidates
 from trunnion.plan.turning.view import TurningSide
@@ -43,7 +43,7 @@ class SetupTurning:
     setup: Setup
     part: BaseGeometry
     stock: BaseGeometry
-    limits: Limits
+    limits: TurningLimits
     tools: Sequence[TurningTool]
     material: Material
     table: TurningTable
@@ -54,11 +54,13 @@ class SetupTurning:
     findings: list[Finding] = field(default_factory=list)
     cut: list[BaseGeometry] = field(default_factory=list)
 
-    def limits_for(self, side: TurningSide) -> Limits:
+    def limits_for(self, side: TurningSide) -> TurningLimits:
         """Return how low tools go from a side: a face is turned to the part's own end."""
         top = float(self.part.bounds[3])
         return (
-            Limits(floor=self.limits.floor, lowest=top) if side is TurningSide.FACE else self.limits
+            TurningLimits(floor=self.limits.floor, lowest=top)
+            if side is TurningSide.FACE
+            else self.limits
         )
 
     def plan(self, stage: Stage, feature: str) -> None:
@@ -102,7 +104,7 @@ class SetupTurning:
         tool: TurningTool,
         reach: TurningReach,
         side: TurningSide,
-        limits: Limits,
+        limits: TurningLimits,
     ) -> None:
         """Add an operation with a tool, unless it takes nothing."""
         left = self._left(reach, finish=stage.finish)

@@ -38,7 +38,7 @@ SHORT = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
+class TurningLimits:
     """Heights z mm in the setup's frame: nothing of the tool goes below `floor`, its point not below `lowest`."""
 
     floor: float
@@ -119,7 +119,7 @@ def reach_of(
     tool: TurningTool,
     side: TurningSide,
     part: BaseGeometry,
-    limits: Limits,
+    limits: TurningLimits,
     stock: BaseGeometry,
     *,
     allowance: float = 0.0,
@@ -205,7 +205,7 @@ def _eased(ceiling: Floats, steepest: float) -> Floats:
 
 
 def _ends(
-    view: PassView, shape: Floats, limits: Limits, widest: tuple[float, float]
+    view: PassView, shape: Floats, limits: TurningLimits, widest: tuple[float, float]
 ) -> tuple[float, float]:
     """Return the least and the largest u that the point may have: past the work as far as `widest`, and within the limits."""
     low, high = (float(u) for u in widest)

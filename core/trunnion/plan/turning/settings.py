@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from trunnion.plan.turning.reach import Limits
+from trunnion.plan.turning.reach import TurningLimits
 from trunnion.plan.turning.view import TurningSide
 from trunnion.settings import setting, settings
 from trunnion.units import FARTHEST
@@ -71,6 +71,6 @@ class TurningSettings:
     )
 
     @property
-    def limits(self) -> Limits:
+    def limits(self) -> TurningLimits:
         """How low the tool goes."""
-        return Limits(floor=self.floor, lowest=self.lowest)
+        return TurningLimits(floor=self.floor, lowest=self.lowest)
