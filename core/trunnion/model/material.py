@@ -68,9 +68,10 @@ class Material:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrillingTable:
-    """What drills bear in a group of materials, or in one: `name` is the group's or the material's.
+    """What drills or reamers bear in a group of materials, or in one: `name` is the group's or the material's.
 
-    `speed` vc m/min; `feeds` rows (diameter, smallest, largest feed a revolution) mm, `feed_share` where between the two.
+    `speed` vc m/min; `feeds` rows (diameter, smallest, largest feed a revolution) mm, `feed_share` where between the two. Of reamers
+    `allowances` are rows (diameter that a range goes up to, least, most that is left on the bore's diameter) mm.
     """
 
     name: str
@@ -78,6 +79,27 @@ class DrillingTable:
     speed: float
     feeds: tuple[tuple[float, float, float], ...]
     feed_share: float
+    source: str
+    allowances: tuple[tuple[float, float, float], ...] = added((), written=False)
+
+    def allowance(self, diameter: float) -> tuple[float, float]:
+        """Return the least and the most in mm by which a bore's diameter is smaller than the reamer of a diameter that follows."""
+        for most, low, high in self.allowances:
+            if diameter <= most:
+                return low, high
+        return self.allowances[-1][1:] if self.allowances else (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TappingTable:
+    """What taps bear in a group of materials, or in one: `name` is the group's or the material's, `speed` vc in m/min.
+
+    Their pitch feeds them.
+    """
+
+    name: str
+    title: str
+    speed: float
     source: str
 
 

@@ -10,12 +10,12 @@ from typing import TypeVar
 
 from trunnion.findings import BadInput
 from trunnion.model.hole_limits import Limits
-from trunnion.model.material import DrillingTable, Machine, Material, TurningTable
+from trunnion.model.material import DrillingTable, Machine, Material, TappingTable, TurningTable
 from trunnion.model.screw_thread import ScrewThread
 from trunnion.model.tool import Tool, TurningTool
 from trunnion.settings import digest
 from trunnion.shop.cutters import Cutter, load_cutters, load_holders
-from trunnion.shop.drilling import load_drilling
+from trunnion.shop.drilling import load_drilling, load_reaming, load_tapping
 from trunnion.shop.fits import FitTables, load_fits
 from trunnion.shop.machines import load_machines
 from trunnion.shop.materials import load_materials
@@ -31,8 +31,8 @@ class Shop:
     """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`).
 
     `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters. `drilling` says by
-    ISO 513 group or by material what drills bear, `turning_data` what inserts do; `fits` and `threads` have
-    the limits of holes and screw threads.
+    ISO 513 group or by material what drills bear, `reaming` and `tapping` what reamers and taps do, `turning_data` what inserts do; `fits`
+    and `threads` have the limits of holes and screw threads.
     """
 
     cutters: tuple[Cutter, ...]
@@ -42,6 +42,8 @@ class Shop:
     turning: tuple[TurningTool, ...] = ()
     drilling: Mapping[str, DrillingTable] = field(default_factory=dict)
     turning_data: Mapping[str, TurningTable] = field(default_factory=dict)
+    reaming: Mapping[str, DrillingTable] = field(default_factory=dict)
+    tapping: Mapping[str, TappingTable] = field(default_factory=dict)
     fits: FitTables = field(default_factory=FitTables)
     threads: ThreadTables = field(default_factory=ThreadTables)
 
@@ -62,6 +64,8 @@ class Shop:
             self.turning,
             self.drilling,
             self.turning_data,
+            self.reaming,
+            self.tapping,
             self.fits,
             self.threads,
         )
@@ -76,13 +80,15 @@ class Shop:
 
     def drilling_for(self, material: Material) -> DrillingTable:
         """Return what drills bear in a material: its own table, else that of its group; raise `BadInput` where there is neither."""
-        found = self.drilling.get(material.name) or self.drilling.get(material.iso_group)
-        if found is None:
-            raise BadInput(
-                f"nothing is known of drilling {material.name}: add a table for it, or for the group {material.iso_group}, "
-                "to the drilling folder"
-            )
-        return found
+        return _table_of(self.drilling, material, "drilling")
+
+    def reaming_for(self, material: Material) -> DrillingTable:
+        """Return what reamers bear in a material, and the allowance they need, as `drilling_for` does of drills."""
+        return _table_of(self.reaming, material, "reaming")
+
+    def tapping_for(self, material: Material) -> TappingTable:
+        """Return what taps bear in a material, as `drilling_for` does of drills."""
+        return _table_of(self.tapping, material, "tapping")
 
     def fit_limits(self, text: str, diameter: float) -> Limits:
         """Return the limits of a hole of a nominal diameter (mm) by its tolerance class (ISO 286-1, "H7") or by deviations in mm
@@ -127,8 +133,9 @@ class Shop:
 def load_shop(user_folder: Path | None = None) -> Shop:
     """Return the catalogues, checked; raise `BadInput` with file, entry and field of the first fault.
 
-    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `machines`, `plans`,
-    `fits`, `threads`, each with TOML files) and adds entries or replaces those of the same name. What is missing there is not needed.
+    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `reaming`, `tapping`, `fits`,
+    `threads`, `machines`, `plans`, each with TOML files) and adds entries or replaces those of the same name. What is missing there is not
+    needed.
     """
     return Shop(
         cutters=load_cutters(load_holders(user_folder), user_folder),
@@ -138,9 +145,22 @@ def load_shop(user_folder: Path | None = None) -> Shop:
         turning=load_turning(user_folder),
         drilling=load_drilling(user_folder),
         turning_data=load_turning_data(user_folder),
+        reaming=load_reaming(user_folder),
+        tapping=load_tapping(user_folder),
         fits=load_fits(user_folder),
         threads=load_threads(user_folder),
     )
+
+
+def _table_of(tables: Mapping[str, T], material: Material, work: str) -> T:
+    """Return a material's own table of a work, which names its folder too, else that of its group."""
+    found = tables.get(material.name) or tables.get(material.iso_group)
+    if found is None:
+        raise BadInput(
+            f"nothing is known of {work} {material.name}: add a table for it, or for the group {material.iso_group}, "
+            f"to the {work} folder"
+        )
+    return found
 
 
 def _named(things: Mapping[str, T], name: str, kind: str) -> T:

@@ -12,8 +12,8 @@ from trunnion.plan.cutting.power import NEWTON_METRES, drilling_power, drilling_
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, trimmed
 
-AXIAL = ("spot", "drill", "countersink")
-"""Kinds of operation whose tool cuts along its axis: their data are those of drilling."""
+AXIAL = ("spot", "drill", "countersink", "ream", "tap")
+"""Kinds of operation whose tool cuts along its axis: their data are those of drilling, reaming or tapping."""
 SLOWER = {"countersink": 0.5}
 """Share of the speed of drilling that other kinds take: a countersink has its edge over a long cone, and chatters (usual shop practice)."""
 
@@ -26,7 +26,8 @@ def drilling_data(
     settings: CuttingSettings,
     kind: str = "drill",
 ) -> CuttingData:
-    """Return the data of an operation of a kind (`AXIAL`) that drills into solid material, with a sentence for each number.
+    """Return the data of an operation of a kind (`AXIAL` but reaming and tapping) that drills into solid material, with a sentence for
+    each number.
 
     The depth of cut of a drill is half its diameter (ISO 3002-3), its width the diameter; it is fed down at the feed itself.
     """

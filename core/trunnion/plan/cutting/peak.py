@@ -13,6 +13,7 @@ from trunnion import registry, tolerance
 from trunnion.findings import Finding, warning
 from trunnion.model.material import Material
 from trunnion.model.operation import CuttingData, Engagement, Operation
+from trunnion.model.tool import TAP
 from trunnion.plan.cutting.power import NEWTON_METRES, tool_power
 from trunnion.settings import Value, checked, choose
 from trunnion.units import trimmed
@@ -47,7 +48,8 @@ def with_peak(
 ) -> Operation:
     """Return an operation whose data know the peak of its load and keep the spindle's limit there where feed and depth can.
 
-    `earlier` are the operations before it in its setup, `choices` a session's settings by full key. Data set by hand keep their numbers.
+    `earlier` are the operations before it in its setup, `choices` a session's settings by full key. Data set by hand keep their numbers,
+    and so do those of taps, which their pitch feeds.
     Turning meets no more than its data say: they keep the limit already.
     """
     if not operation.tool.rotates or operation.tool.locked:
@@ -59,7 +61,7 @@ def with_peak(
         return Peak(met=met, power=_power(operation, data, met, material))
 
     data = operation.data
-    if not operation.keeps_data:
+    if not operation.keeps_data and operation.cutter.form != TAP:
         data = _shallower(_slower(data, peak, material), peak, operation)
     found = peak(data)
     torque = NEWTON_METRES * found.power / data.spindle

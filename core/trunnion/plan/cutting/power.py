@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Material
-from trunnion.model.tool import Tool
+from trunnion.model.tool import REAMER, TAP, Tool
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 
 NEWTON_METRES = SECONDS_PER_MINUTE * WATTS_PER_KILOWATT / (2.0 * math.pi)
@@ -16,6 +16,12 @@ NEWTON_METRES = SECONDS_PER_MINUTE * WATTS_PER_KILOWATT / (2.0 * math.pi)
 
 DRILL = "drill"
 """The form of cutters that cut along their axis, with their whole diameter."""
+
+AXIAL_FORMS = (DRILL, REAMER, TAP)
+"""Forms of cutters that cut along their axis."""
+
+THREAD_TORQUE = 8000.0
+"""Of a tap's torque in Nm: it cuts a section of P^2 / 4 at half its diameter, and 1000 Nmm are one Nm."""
 
 LEAST_CHIP = 1e-3
 """mm: the thinnest mean chip that Kienzle's formula is taken for."""
@@ -41,9 +47,14 @@ def cutting_power(
 def tool_power(
     material: Material, tool: Tool, feed_per_tooth: float, depth: float, width: float, feed: float
 ) -> float:
-    """Return the power at a tool in kW: of a drill by its whole diameter, of others by depth and width of cut (mm)."""
+    """Return the power at a tool in kW: of a drill by its whole diameter, of a reamer by the ring of its depth of cut (mm), of a tap by its
+    torque, of others by depth and width of cut."""
     if tool.form == DRILL:
         return drilling_power(material, tool, feed_per_tooth, feed)
+    if tool.form == REAMER:
+        return reaming_power(material, tool, feed_per_tooth, depth, feed)
+    if tool.form == TAP:
+        return tapping_torque(material, tool) * (feed / tool.pitch) / NEWTON_METRES
     return cutting_power(material, tool.diameter, feed_per_tooth, depth, width, feed)
 
 
@@ -55,6 +66,25 @@ def drilling_power(material: Material, tool: Tool, feed_per_tooth: float, feed: 
     specific = float(specific_force(material, np.array(drill_chip(tool, feed_per_tooth))))
     area = 0.25 * math.pi * tool.diameter**2
     return area * feed * specific / (SECONDS_PER_MINUTE * MM_PER_METRE * WATTS_PER_KILOWATT)
+
+
+def reaming_power(
+    material: Material, tool: Tool, feed_per_tooth: float, depth: float, feed: float
+) -> float:
+    """Return the power in kW of reaming a bore by `depth` mm on its radius, by Kienzle: P = A vf k_c with the ring A = pi (D - ap) ap."""
+    specific = float(specific_force(material, np.array(drill_chip(tool, feed_per_tooth))))
+    area = math.pi * (tool.diameter - depth) * depth
+    return area * feed * specific / (SECONDS_PER_MINUTE * MM_PER_METRE * WATTS_PER_KILOWATT)
+
+
+def tapping_torque(material: Material, tool: Tool) -> float:
+    """Return the torque of tapping in Nm: Md = P^2 D k_c / 8000 (Lubero, calculations: torque and power ranges).
+
+    k_c is Kienzle's at the tap's chip, h = P^2 / (2 z l) with the length l of its lead (same source): up to twice the makers' values.
+    """
+    chip = tool.pitch**2 / (2.0 * tool.teeth * tool.lead)
+    specific = float(specific_force(material, np.array(chip)))
+    return tool.pitch**2 * tool.diameter * specific / THREAD_TORQUE
 
 
 def drilling_thrust(material: Material, tool: Tool, feed_per_tooth: float) -> float:

@@ -8,10 +8,10 @@ from dataclasses import replace
 from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.model.material import Machine, Material
-from trunnion.model.operation import Operation
+from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.spindle import surface_speed
-from trunnion.model.tool import TAP, Tool
+from trunnion.model.tool import REAMER, TAP, Tool
 from trunnion.plan.cutting.drilling import AXIAL
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.cutting.optimize import recomputed
@@ -159,22 +159,47 @@ def _with_spindle(
         )
     if abs(spindle - operation.data.spindle) <= tolerance.COINCIDENT:
         return operation
+    now = _at_its_pitch(operation, spindle, machine)
     data = replace(
-        operation.data,
+        now,
         spindle=spindle,
         speed=float(surface_speed(spindle, operation.cutter.diameter)),
-        feed_per_tooth=operation.data.feed / (operation.cutter.teeth * spindle),
+        feed_per_tooth=now.feed / (operation.cutter.teeth * spindle),
         power_limit=machine.power_at(spindle) * cutting.power_share,
         rules=(
-            *_without(operation.data.rules, *SPEED_RULES, *FEED_RULES),
+            *_without(now.rules, *SPEED_RULES, *FEED_RULES),
             f"n {trimmed(spindle, 0)} 1/min: {BY_HAND}",
         ),
     )
     return replace(operation, data=data)
 
 
+def _at_its_pitch(operation: Operation, spindle: float, machine: Machine) -> CuttingData:
+    """Return the data of an operation; those of a tap with the feed of its pitch at a spindle speed."""
+    now, tool = operation.data, operation.cutter
+    if tool.form != TAP:
+        return now
+    feed = tool.pitch * spindle
+    if not float(spindle).is_integer():
+        raise BadInput(
+            f"{operation.id}: a tap turns at a whole number of revolutions a minute, not at {spindle:g}"
+        )
+    if feed > machine.feed_max:
+        raise BadInput(
+            f"{operation.id}: at {trimmed(spindle, 0)} 1/min the pitch asks for {trimmed(feed, 0)} mm/min, {machine.name} feeds at most "
+            f"{trimmed(machine.feed_max, 0)}"
+        )
+    return replace(
+        now, feed=feed, plunge_feed=feed, removal_rate=now.removal_rate * feed / now.feed
+    )
+
+
 def _with_feed(operation: Operation, feed: float, machine: Machine) -> Operation:
     now = operation.data
+    if operation.cutter.form == TAP and abs(feed - now.feed) > tolerance.COINCIDENT:
+        raise BadInput(
+            f"{operation.id}: a tap's feed is its pitch times the spindle speed; change the spindle speed"
+        )
     if feed > machine.feed_max:
         raise BadInput(
             f"{operation.id}: {machine.name} feeds at most {trimmed(machine.feed_max, 0)} mm/min, not {trimmed(feed, 0)}"
@@ -199,7 +224,7 @@ def _without(rules: tuple[str, ...], *beginnings: str) -> tuple[str, ...]:
 def _with_load(operation: Operation, material: Material) -> Operation:
     """Return an operation whose power and torque are those of its speed and feed."""
     data, tool = operation.data, operation.cutter
-    if operation.kind in AXIAL:
+    if operation.kind in AXIAL and tool.form not in (REAMER, TAP):
         power = drilling_power(material, tool, data.feed_per_tooth, data.feed)
     else:
         power = tool_power(material, tool, data.feed_per_tooth, data.depth, data.width, data.feed)

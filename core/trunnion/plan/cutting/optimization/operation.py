@@ -36,7 +36,7 @@ from trunnion.plan.cutting.optimization.settings import (
     OptimizeSettings,
 )
 from trunnion.plan.cutting.peak import LEAST_SHARE, largest_engagement
-from trunnion.plan.cutting.power import DRILL, NEWTON_METRES, cutting_power
+from trunnion.plan.cutting.power import AXIAL_FORMS, NEWTON_METRES, cutting_power
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value, checked, choose
 from trunnion.shop.materials import feed_at
@@ -70,12 +70,13 @@ class OptimizationSettings:
 
 
 def can_be_optimised(operation: Operation) -> bool:
-    """Return whether there are models for an operation: a mill that cuts with its flank or end. Drills keep their tables."""
+    """Return whether there are models for an operation: a mill that cuts with its flank or end. Drills, reamers and taps keep their
+    tables."""
     return (
         operation.tool.rotates
         and not operation.tool.locked
         and operation.kind not in AXIAL
-        and operation.cutter.form != DRILL
+        and operation.cutter.form not in AXIAL_FORMS
         and not operation.keeps_data
     )
 
