@@ -25,6 +25,7 @@ from trunnion import tolerance
 from trunnion.findings import BadInput
 from trunnion.geometry.arrays import Floats
 from trunnion.geometry.cut import Cut
+from trunnion.geometry.dimension import Dimension
 from trunnion.part.build import compound
 from trunnion.part.face_curve import DrawnCurve
 from trunnion.part.part import Part
@@ -90,6 +91,7 @@ def divided(part: Part, cut: Cut) -> Part:
         names=_inherited(facts.names, new_tags),
         entities=_inherited(facts.entities, new_tags),
         colours=_inherited(facts.colours, new_tags),
+        dimensions=tuple(_of_pieces(d, new_tags) for d in facts.dimensions),
     )
     as_read[cut.face - 1] = read_pieces[0]
     return Part(after, shape, compound([*as_read, *read_pieces[1:]]))
@@ -211,6 +213,13 @@ def _tags(shape: Shape, tagged: dict[int, Shape]) -> tuple[int, ...]:
 
 def _inherited(words: Mapping[int, T], tags: list[int]) -> dict[int, T]:
     return {**words, **{t: words[tags[0]] for t in tags[1:] if tags[0] in words}}
+
+
+def _of_pieces(dimension: Dimension, tags: list[int]) -> Dimension:
+    """Return a dimension of a cut face as one of all its pieces: each keeps the size of the whole."""
+    if tags[0] not in dimension.faces:
+        return dimension
+    return replace(dimension, faces=tuple(sorted({*dimension.faces, *tags})))
 
 
 def _listed(shapes: Iterable[Shape]) -> TopTools_ListOfShape:

@@ -15,6 +15,7 @@ from trunnion import tolerance
 from trunnion.findings import BadInput, Finding, Severity
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.boundary import Boundary
+from trunnion.geometry.dimension import Dimension
 from trunnion.geometry.facegraph import FaceGraph
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.mesh import Mesh
@@ -37,7 +38,8 @@ class PartMetadata:
     `unit` is the file's own ("mm", "inch", ...), lengths here are mm; `tags` (k,) the tag of every face of the chosen solid in the
     order of the solid's own faces; `names` and `colours` (red, green, blue from 0 to 1) by face tag where the file gives them; `entities`
     the first line in an IGES file's directory of the entity that a face comes from, by its tag; `backing` the tags of faces that are none
-    of the file's: they make a solid of faces that enclose no material (`part.backing`).
+    of the file's: they make a solid of faces that enclose no material (`part.backing`); `dimensions` the sizes that a STEP file gives as
+    data, of faces of the chosen solid.
     """
 
     path: str
@@ -56,6 +58,7 @@ class PartMetadata:
     entities: Mapping[int, int] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     backing: tuple[int, ...] = ()
+    dimensions: tuple[Dimension, ...] = ()
 
     def to_json(self) -> str:
         """Return the facts as JSON text."""
@@ -75,6 +78,10 @@ class PartMetadata:
         data["entities"] = {int(k): v for k, v in data["entities"].items()}
         data["tags"] = tuple(data["tags"])
         data["backing"] = tuple(data["backing"])
+        # Parts that were written before dimensions were read have none.
+        data["dimensions"] = tuple(
+            Dimension(**d | {"faces": tuple(d["faces"])}) for d in data.get("dimensions", ())
+        )
         return PartMetadata(**data)
 
 
@@ -132,6 +139,10 @@ class Part:
     backing = property(
         lambda self: self.facts.backing,
         doc="Tags of faces that only give open faces material behind them: nobody asks for them.",
+    )
+    dimensions = property(
+        lambda self: self.facts.dimensions,
+        doc="Sizes with tolerances, fits and threads of faces, where a STEP file gives them as data.",
     )
     findings = property(
         lambda self: self.facts.findings, doc="What a person should know about the file."
