@@ -279,14 +279,18 @@ def written(shape: Any, suffix: str = "step", unit: str = "mm", name: str = "sam
 
 def read(shape: Any, suffix: str = "step", unit: str = "mm", solid: int | None = None) -> Part:
     """Return the part of a shape that was written to a file and read back, once a session and, for speed, in this process."""
+    return read_path(written(shape, suffix, unit), solid)
+
+
+def read_path(file: Path, solid: int | None = None) -> Part:
+    """Return the part of a file, read once a session and, for speed, in this process."""
     from trunnion.part.read.request import ReadRequest
     from trunnion.part.read.text import check_iges, check_step
     from trunnion.part.read.transfer import read_file
 
-    file = written(shape, suffix, unit)
     if (file, solid) not in _PARTS:
         data = file.read_bytes()
-        is_iges = suffix in ("igs", "iges")
+        is_iges = file.suffix in (".igs", ".iges")
         request = ReadRequest(
             file=file.name,
             path=str(file),

@@ -41,6 +41,8 @@ OTHER_WORDS = {
     "trunnion/toolpath/motion/hole_access.py": {"hole."},
     # the kind of features that is recognised alike in parts of every family
     "trunnion/recognize/holes/features.py": {"hole"},
+    # what a fit in a STEP file is of, a hole or a shaft
+    "trunnion/part/read/step_dimensions.py": {"hole"},
     # an element of the features' schema
     "trunnion/store/features.py": {"island"},
 }

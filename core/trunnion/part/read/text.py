@@ -17,6 +17,12 @@ _STEP_FACE = re.compile(rb"=\s*(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
 _STEP_SHAPE = re.compile(
     rb"=\s*\(?\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP|OPEN_SHELL|CLOSED_SHELL)\b"
 )
+_STEP_PMI = re.compile(
+    rb"#\d+\s*=\s*(?:DIMENSIONAL_\w+|SHAPE_DIMENSION_REPRESENTATION|PLUS_MINUS_TOLERANCE|TOLERANCE_VALUE|"
+    rb"\w*SHAPE_ASPECT\w*|GEOMETRIC_ITEM_SPECIFIC_USAGE|ITEM_IDENTIFIED_REPRESENTATION_USAGE|"
+    rb"DRAUGHTING_MODEL_ITEM_ASSOCIATION\w*)\s*\([^;]*;"
+)
+"""Entities of sizes and tolerances: no shape is made of them."""
 _NO_NUMBER = re.compile(
     rb"(?<![A-Z0-9_#.'$])[-+]?(?:NAN|INF(?:INITY)?|1\.#(?:IND|INF|QNAN)\w*)(?![A-Z0-9_])",
     re.IGNORECASE,
@@ -62,7 +68,10 @@ def check_step(data: bytes, name: str) -> int:
         raise BadInput(
             f"{name}: {wrong.group().decode('ascii')} in line {line} is not a number; export the part again"
         )
-    missing = sorted(set(map(int, _USED.findall(body))) - defined)
+    missing = _missing(body, defined)
+    if missing:
+        # Sizes that refer to nothing are told of where they are read; the shape is whole without them.
+        missing = _missing(_STEP_PMI.sub(b"", body), defined)
     if missing:
         more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
         raise BadInput(
@@ -74,6 +83,11 @@ def check_step(data: bytes, name: str) -> int:
             f"{name}: the file holds curves or points only, no faces; export the part as a solid"
         )
     return faces
+
+
+def _missing(body: bytes, defined: set[int]) -> list[int]:
+    """Return the numbers that a STEP text refers to and doesn't define, ascending."""
+    return sorted(set(map(int, _USED.findall(body))) - defined)
 
 
 def check_iges(data: bytes, name: str) -> int:

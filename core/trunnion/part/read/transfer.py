@@ -16,6 +16,7 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from trunnion.findings import BadInput, Finding, error, face_tags, warning
 from trunnion.part.part import Part, PartMetadata
+from trunnion.part.read.dimension_faces import ReadDimensions, read_dimensions
 from trunnion.part.read.heal import Body, bodies_of
 from trunnion.part.read.kernel_messages import hush
 from trunnion.part.read.request import ReadRequest
@@ -47,13 +48,14 @@ _UNIT_WORDS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransferResult:
-    """What the kernel read: the shape in mm, the file's unit, names and colours by face tag, and lines of IGES entities."""
+    """What was read: the shape in mm, the file's unit, names and colours by face tag, lines of IGES entities, dimensions of STEP files."""
 
     shape: Shape
     unit: str
     names: Mapping[int, str] = field(default_factory=dict)
     colours: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
     entities: Mapping[int, int] = field(default_factory=dict)
+    dimensions: ReadDimensions = field(default_factory=ReadDimensions)
 
 
 def read_file(file: Path, request: ReadRequest) -> Part:
@@ -77,12 +79,16 @@ def _read_step(file: Path, request: ReadRequest) -> TransferResult:
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
     reader.SetColorMode(True)
+    # Dimensions are read from the text; the kernel needn't meet damaged ones, nor pictures of them.
+    reader.SetGDTMode(False)
+    reader.SetViewMode(False)
     if reader.ReadFile(str(file)) != IFSelect_RetDone:
         raise BadInput(f"{request.file}: the STEP file can't be understood; export the part again")
     lengths, angles, solids = (TColStd_SequenceOfAsciiString() for _ in range(3))
     reader.ChangeReader().FileUnits(lengths, angles, solids)
     unit = lengths.Value(1).ToCString().lower() if lengths.Length() else "mm"
-    return _with_document(reader, reader.ChangeReader(), request, _UNIT_WORDS.get(unit, unit))
+    read = _with_document(reader, reader.ChangeReader(), request, _UNIT_WORDS.get(unit, unit))
+    return replace(read, dimensions=read_dimensions(reader.ChangeReader(), file, read.shape))
 
 
 def _read_iges(file: Path, request: ReadRequest) -> TransferResult:
@@ -180,6 +186,7 @@ def _part(read: TransferResult, request: ReadRequest) -> Part:
         *_other_solids(bodies, number, request),
     ]
     notes += _loose(bodies, len(tagged), request)
+    notes += read.dimensions.findings(request.file)
     if not body.is_closed:
         notes.append(
             warning(
@@ -205,6 +212,7 @@ def _part(read: TransferResult, request: ReadRequest) -> Part:
         names=read.names,
         colours=read.colours,
         entities=read.entities,
+        dimensions=read.dimensions.of_faces(frozenset(body.tags)),
         findings=tuple(notes),
     )
     return Part(facts, body.shape, read.shape)
