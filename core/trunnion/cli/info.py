@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
@@ -15,10 +17,13 @@ from trunnion.cli.common import (
 )
 
 if TYPE_CHECKING:
+    from trunnion.model.dimension import Dimension
     from trunnion.pipeline.part_entities import FileEntities
 
 MOST_FACES = 40
 """Faces whose entities are printed; JSON has all."""
+MOST_DIMENSIONS = 40
+"""Dimensions that are printed; JSON has all."""
 
 
 def add(commands: Any) -> None:
@@ -33,6 +38,7 @@ def run(options: argparse.Namespace) -> int:
     engine, session = open_session(options, None)
     part, listed = session.part, file_entities(engine, session)
     assert part is not None
+    dimensions = engine.context_of(session).part.dimensions
     size = [float(h - l) for l, h in zip(part.low, part.high, strict=True)]
     if options.json:
         show_json(
@@ -49,6 +55,7 @@ def run(options: argparse.Namespace) -> int:
                 "high": list(map(float, part.high)),
                 "size": size,
                 "entities": listed.as_dict() if listed else None,
+                "dimensions": [asdict(d) for d in dimensions],
                 "findings": [f.as_dict() for f in part.findings],
             }
         )
@@ -62,6 +69,8 @@ def run(options: argparse.Namespace) -> int:
         print(f"digest  {part.digest}")
         if listed is not None:
             print(f"\n{entity_text(listed)}")
+        if dimensions:
+            print(f"\n{dimension_text(dimensions)}")
     show_findings(options, part.findings)
     return exit_code(part.findings)
 
@@ -77,3 +86,33 @@ def entity_text(listed: FileEntities) -> str:
     more = len(listed.faces) - MOST_FACES
     rest = f"\nand {more} more faces: --json has all" if more > 0 else ""
     return f"{table(types, right=(0, 2))}\n\n{table(faces, right=(0,))}{rest}"
+
+
+def dimension_text(dimensions: Sequence[Dimension]) -> str:
+    """Return the sizes that a file gives as data, with their number, as aligned text."""
+    count = len(dimensions)
+    rows = [("size", "mm", "upper", "lower", "fit", "thread", "faces", "called")]
+    rows += [
+        (
+            d.kind,
+            f"{d.value:.7g}",
+            _deviation(d.upper),
+            _deviation(d.lower),
+            d.fit,
+            d.thread,
+            " ".join(map(str, d.faces)),
+            d.text,
+        )
+        for d in dimensions[:MOST_DIMENSIONS]
+    ]
+    head = "1 dimension" if count == 1 else f"{count} dimensions"
+    more = count - MOST_DIMENSIONS
+    rest = f"\nand {more} more: --json has all" if more > 0 else ""
+    return f"{head}\n{table(rows, right=(1, 2, 3))}{rest}"
+
+
+def _deviation(deviation: float | None) -> str:
+    """Return a deviation (mm) with its sign, zero without one, and nothing where there is none."""
+    if deviation is None:
+        return ""
+    return f"{deviation:+.6g}" if deviation else "0"

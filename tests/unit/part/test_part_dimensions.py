@@ -18,7 +18,9 @@ from trunnion.geometry.cut import plane_cut
 from trunnion.model.dimension import DIAMETER, Dimension
 from trunnion.part.cut import divided
 from trunnion.part.part import Part, PartMetadata
+from trunnion.part.read.dimension_faces import _BLOCK, has_dimensions
 from trunnion.part.read.part_file import read_part
+from trunnion.part.read.step_dimensions import MARK
 
 BORE = Dimension(DIAMETER, 12.0, 0.018, 0.0, "H7", "", "bore A", (2, 5))
 TAPPED = Dimension(DIAMETER, 5.0, thread="M6x1", faces=(3,))
@@ -51,6 +53,14 @@ def test_the_pieces_of_a_cut_face_keep_its_size() -> None:
 @pytest.mark.parametrize("suffix", ["step", "igs"])
 def test_a_file_without_sizes_as_data_has_no_dimensions(suffix: str) -> None:
     assert samples.read(samples.box_shape(), suffix).dimensions == ()
+
+
+@pytest.mark.parametrize("before", [0, _BLOCK - 5, _BLOCK, 3 * _BLOCK - len(MARK)])
+def test_the_mark_of_sizes_is_found_wherever_blocks_end(tmp_path: Path, before: int) -> None:
+    (path := tmp_path / "long.step").write_bytes(b" " * before + MARK + b"(")
+    assert has_dimensions(path)
+    path.write_bytes(b" " * before + MARK[:-1])
+    assert not has_dimensions(path)
 
 
 HOLES = (12.0, 12.0, 8.0, 6.0)

@@ -43,6 +43,14 @@ def test_a_reference_to_nothing_is_refused() -> None:
         check_step(STEP.replace(b"PLANE('',#", b"PLANE('',#999999,#", 1), "a.step")
 
 
+def test_a_size_that_refers_to_nothing_loses_no_face() -> None:
+    size = b"#900000=DIMENSIONAL_SIZE(#999999,'diameter');ENDSEC;"
+    data = size.join(STEP.rsplit(b"ENDSEC;", 1))
+    assert check_step(data, "a.step") == 6
+    with pytest.raises(BadInput, match="#999998 is referred to"):
+        check_step(data.replace(b"PLANE('',#", b"PLANE('',#999998,#", 1), "a.step")
+
+
 def test_a_reference_inside_a_text_is_no_reference() -> None:
     assert (
         check_step(STEP.replace(b"PLANE('',", b"PLANE('see #999999 /* not a remark',", 1), "a.step")

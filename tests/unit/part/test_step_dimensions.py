@@ -296,6 +296,11 @@ def test_what_the_annotation_shows_is_the_name_where_the_aspect_has_none() -> No
     ).dimension.text == ("Ø12")
 
 
+def test_the_name_is_one_line() -> None:
+    named = HOLE.replace("bore A", r"bore\X\0A  A ")
+    assert only(named, SIZE, measure(25, 12.0)).dimension.text == "bore A"
+
+
 def test_two_threads_of_one_size_are_said_and_none_is_taken() -> None:
     note = "#26=DESCRIPTIVE_REPRESENTATION_ITEM('dimensional note','M6x1');"
     (found,), (said,) = read(HOLE.replace("bore A", "M6x0.75 hole"), NOTE, measure(25, 5.0), note)

@@ -139,3 +139,9 @@ def test_damage_among_entities_of_a_type_is_noted() -> None:
     text = StepText(b"#1=A(&);#2=A(1.);#3=B(&);", ["A", "B"])
     assert [e.number for e in text.of_types("A")] == [2]
     assert text.damage == {1: "#1 can't be understood"}
+
+
+def test_lists_may_be_nested_deeper_than_functions_call_each_other() -> None:
+    depth = 5000
+    text = StepText(b"#1=A(" + b"(" * depth + b"#7" + b")" * depth + b");", ["A"])
+    assert numbers_in(text.entity(1).parameters("A")) == [7]

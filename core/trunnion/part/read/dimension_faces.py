@@ -26,6 +26,8 @@ from trunnion.geometry.dimension import Dimension
 from trunnion.part.read.step_dimensions import MARK, FileDimensions, dimensions_in
 from trunnion.part.topology.identity import Shape, edges_of, faces_of
 
+_BLOCK = 1 << 20
+"""Bytes of a file that are looked through at a time."""
 _MOST_PROBLEMS = 3
 """Problems that a finding says; it counts the others."""
 
@@ -63,12 +65,22 @@ class ReadDimensions:
         ]
 
 
+def has_dimensions(file: Path) -> bool:
+    """Return whether a STEP file may give sizes as data, without holding more than a block of it in memory."""
+    before = b""
+    with file.open("rb") as stream:
+        while block := stream.read(_BLOCK):
+            if MARK in before + block:
+                return True
+            before = block[-len(MARK) :]
+    return False
+
+
 def read_dimensions(reader: Any, file: Path, shape: Shape) -> ReadDimensions:
     """Return the dimensions that a STEP file gives of the faces of a shape; `reader` is the kernel's, after its transfer."""
-    data = file.read_bytes()
-    if MARK not in data:
+    if not has_dimensions(file):
         return ReadDimensions()
-    given = dimensions_in(data)
+    given = dimensions_in(file.read_bytes())
     model = reader.StepModel()
     if given.dimensions and model.NbEntities() != given.count:
         problem = f"the CAD kernel takes {model.NbEntities()} entities of {given.count}, so no size can be tied to its faces"

@@ -49,7 +49,8 @@ class ShapeAspects:
             parameters = self._text.entity(aspect).parameters(*_NAMED) or ()
         except BadEntity:
             return []
-        return [p.strip() for p in parameters[:2] if isinstance(p, str) and p.strip()]
+        found = [" ".join(p.split()) for p in parameters[:2] if isinstance(p, str)]
+        return [words for words in found if words]
 
     def items(self, aspect: int) -> tuple[int, ...]:
         """Return the numbers of the faces, edges and other items of an aspect and of those that it is made of, each once."""

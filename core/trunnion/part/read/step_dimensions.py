@@ -243,7 +243,8 @@ class _DimensionReader:
                 except BadEntity:
                     continue
                 if words and words[0] == _ANNOTATION_WORDS and isinstance(words[-1], str):
-                    found.append(_LINE_ENDS.sub(" ", _WORDS_KIND.sub("", words[-1])).strip())
+                    lines = _LINE_ENDS.sub(" ", _WORDS_KIND.sub("", words[-1]))
+                    found.append(" ".join(lines.split()))
         return [w for w in found if w]
 
     def _property_items(self, definition: int) -> list[int]:

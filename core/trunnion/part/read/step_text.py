@@ -158,14 +158,18 @@ class StepText:
 
 
 def numbers_in(parameter: object) -> list[int]:
-    """Return the numbers of the entities that a parameter names, in lists and typed values too."""
-    if isinstance(parameter, EntityNumber):
-        return [parameter.number]
-    if isinstance(parameter, EntityRecord):
-        return numbers_in(parameter.parameters)
-    if isinstance(parameter, tuple):
-        return [number for inside in parameter for number in numbers_in(inside)]
-    return []
+    """Return the numbers of the entities that a parameter names, in lists and typed values too, in their order."""
+    found, waiting = [], [parameter]
+    # A damaged file may nest lists deeper than functions can call each other.
+    while waiting:
+        value = waiting.pop()
+        if isinstance(value, EntityNumber):
+            found.append(value.number)
+        elif isinstance(value, EntityRecord):
+            waiting += reversed(value.parameters)
+        elif isinstance(value, tuple):
+            waiting += reversed(value)
+    return found
 
 
 def _records(number: int, body: bytes) -> tuple[EntityRecord, ...]:
