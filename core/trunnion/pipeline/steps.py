@@ -20,6 +20,7 @@ from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.part_work import before_blank, before_proof, before_route
 from trunnion.pipeline.planning.blank import blank_of, source_of, too_small
 from trunnion.pipeline.planning.family import RecognizeSettings, recognised
+from trunnion.pipeline.planning.hole_demands import with_demands
 from trunnion.pipeline.planning.library import library_choice, library_key, routed
 from trunnion.pipeline.planning.machine import with_machine
 from trunnion.pipeline.planning.manual_edits import with_manual_features
@@ -37,6 +38,7 @@ from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.cutting.optimization.settings import GeneticSettings, OptimizeSettings
 from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.peak import overloads
+from trunnion.plan.holes.demand import demand_words
 from trunnion.plan.library.settings import LibrarySettings
 from trunnion.plan.manual.manual_operations import with_manual_operations
 from trunnion.plan.repair.contract import RepairJob
@@ -110,9 +112,9 @@ def _recognize(session: Session, context: Context, progress: Progress) -> Result
         found = _seen_from_side(found, session, context)
     kept = with_manual_features(session.recognition, found)
     after = replace(session, recognition=kept)
-    return Result(
-        session=after if kept is found else measured_anew(after, context), findings=kept.findings
-    )
+    measured = _recognition(after if kept is found else measured_anew(after, context))
+    whole = with_demands(measured, session.recognition, context.part.dimensions, context.shop)
+    return Result(session=replace(session, recognition=whole), findings=whole.findings)
 
 
 def _seen_from_side(found: Recognition, session: Session, context: Context) -> Recognition:
@@ -297,6 +299,7 @@ STEP_TABLE: tuple[Step, ...] = (
             b.part.solid,
             registry.names(FAMILIES),
             registry.names(PART_KINDS),
+            *((b.shop.digest,) if b.part.dimensions else ()),
         ),
         done=lambda s: s.recognition is not None,
         foresees=(before_blank, before_route),
@@ -391,6 +394,7 @@ STEP_TABLE: tuple[Step, ...] = (
             s.process,
             tuple(p.key for p in s.paths),
             s.fixtures,
+            *demand_words(s.recognition),
         ),
         done=lambda s: s.verdict is not None,
         version=2,

@@ -10,29 +10,26 @@ import pytest
 from lxml import etree
 from pytest import approx
 
-from flat_parts import MILL, FlatPart, Prism, blank_of
+from flat_parts import MILL, blank_of
 from holed import HIGH, feature, hole
 from programs import part_info
 from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD, Frame
-from trunnion.geometry.plane.region import Region
-from trunnion.model.feature import FaceRole, Feature, Recognition
+from trunnion.model.feature import Feature
 from trunnion.plan.holes.drive import hole_drive
 from trunnion.plan.holes.hole import hole_in
-from trunnion.plan.holes.tools import HoleSpace, drills_for, tip_of
+from trunnion.plan.holes.tools import drills_for, tip_of
 from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
-from trunnion.plan.panel.route import RouteSettings, make_route
+from trunnion.plan.panel.route import RouteSettings
 from trunnion.plan.panel.tasks import PanelPlanState
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.repair.tool_change import next_tool
 from trunnion.plan.setups import SetupSettings, make_setups
-from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 from trunnion.store.process import process_xml
+from walled_plates import SHOP, around, route, walled
 
-SHOP = load_shop()
 DRILLS = SHOP.tools_for("N", "drill")
 D8 = next(t for t in DRILLS if t.name == "DR-K D8")
 TURNED = Frame(np.array([100.0, 60.0, HIGH]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0]))
@@ -97,47 +94,6 @@ def test_a_flat_floor_is_drilled_down_to_with_the_tip():
     assert tip_of(shape(hole(0, 0, 8, 12.0)).bore, D8, 1.0) == approx(8.0)
 
 
-def walled(*holes, wall: float = 0.0, at: float = 40.0):
-    """Return a plate 100 x 60 x 20 with holes, its ground beside a wall from x = `at` on lower by `wall` mm, and its recognition."""
-    cuts = [
-        Prism(
-            area=Region.circle((h["x"], h["y"]), h["diameter"] / 2),
-            low=h["top_z"] - h["depth"] - (1.0 if h["through"] else 0.0),
-            high=HIGH + 1.0,
-            face=2 * n + 2,
-            side=2 * n + 3,
-            at=(h["x"], h["y"]),
-        )
-        for n, h in enumerate(holes)
-    ]
-    if wall:
-        n = 2 * len(holes) + 2
-        ground = Region.rectangle(-10, -10, at, 70)
-        cuts.append(
-            Prism(area=ground, low=HIGH - wall, high=HIGH + 1, face=n, side=n + 1, at=(5, 5))
-        )
-    part = FlatPart(outline=Region.rectangle(0, 0, 100, 60), height=HIGH, cuts=tuple(cuts))
-    features = tuple(
-        Feature(
-            id=f"hole-{n + 1:02}",
-            kind="hole",
-            faces=(FaceRole(role="side", face=2 * n + 3),),
-            sizes=h,
-        )
-        for n, h in enumerate(holes)
-    )
-    return part, Recognition(family="panel", frame=WORLD, features=features)
-
-
-def around(made, clearance=1.0):
-    part, recognition = made
-    blank = blank_of(part)
-    setup = make_setups(recognition, blank, choose(SetupSettings, MILL))[0]
-    space = SetupSpace.of(part, recognition, blank, setup)
-    first = hole_in(recognition.features[0], WORLD, setup.frame).bore
-    return HoleSpace(space=space, clearance=clearance), first
-
-
 def chosen(made, **changed):
     surroundings, first = around(made)
     words = {"diameter_tolerance": 0.02, "breakthrough": 1.0, **changed}
@@ -191,23 +147,6 @@ def test_a_covered_mouth_is_seen():
     surroundings, first = around(walled(hole(30, 30, 8, 12.0)))
     assert surroundings.is_open(first)
     assert not surroundings.is_open(replace(first, x=first.x + 20.0, top=first.top - 5.0))
-
-
-def route(made, **choices):
-    part, recognition = made
-    blank = blank_of(part)
-    setups = make_setups(recognition, blank, choose(SetupSettings, MILL))
-    return make_route(
-        recognition,
-        (),
-        blank,
-        setups,
-        SHOP,
-        part,
-        choose(RouteSettings, {}),
-        NO_PROGRESS,
-        choices=choices,
-    )
 
 
 EQUAL = (hole(20, 20, 8), hole(80, 20, 8), hole(50, 40, 6, 8.0, point_angle=140.0), hole(20, 40, 8))

@@ -114,9 +114,9 @@ def test_a_reamer_has_speed_feed_and_depth_of_its_table():
     data, table = reamed(), SHOP.reaming_for(ALUMINIUM)
     assert data.speed == table.speed == 150.0
     assert data.feed / data.spindle == pytest.approx(0.38)
-    assert table.allowance(10.0) == (0.25, 0.4) and data.depth == 0.2
-    assert data.removal_rate == pytest.approx(math.pi * 9.8 * 0.2 * data.feed / 1000)
-    assert any("0.25 to 0.4 mm smaller" in rule for rule in data.rules)
+    assert table.allowance(10.0) == (0.2, 0.3) and data.depth == 0.15
+    assert data.removal_rate == pytest.approx(math.pi * 9.85 * 0.15 * data.feed / 1000)
+    assert any("0.2 to 0.3 mm smaller" in rule for rule in data.rules)
 
 
 @pytest.mark.parametrize("material", sorted(SHOP.materials))
@@ -239,7 +239,7 @@ def test_another_tap_of_the_same_thread_may_stand_in_by_hand():
 def test_power_of_a_reamer_by_hand_is_that_of_its_ring():
     data = by_hand(OperationChange(feed=100.0), REAMER, reamed(material=STEEL)).data
     chip = 100.0 / (6 * data.spindle) * math.sqrt(0.5)
-    area = math.pi * 9.8 * 0.2
+    area = math.pi * 9.85 * 0.15
     assert data.power == pytest.approx(
         area * 100.0 * STEEL.force * chip**-STEEL.force_exponent / 6e7
     )

@@ -1,10 +1,10 @@
-"""`trunnion edit`: features given other faces by hand, kept in a project that other commands go on with."""
+"""`trunnion edit`: features given other faces, and holes their fits and threads, kept in a project that other commands go on with."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
     check_output,
@@ -19,15 +19,19 @@ from trunnion.cli.common import (
 )
 from trunnion.findings import BadCall, BadInput
 
+if TYPE_CHECKING:
+    from trunnion.model.feature import Feature
+    from trunnion.plan.holes.settings import HoleDemand
+
 
 def add(commands: Any) -> None:
     """Add the command to the command line."""
     made = part_command(
         commands,
         "edit",
-        "give features other faces by hand: add, take, merge, make",
-        "Gives features other faces by hand, in the order add, take, merge, make, and saves the project. Roles and sizes follow from the "
-        "faces; recognition keeps what was changed.",
+        "give features other faces by hand: add, take, merge, make; holes fits and threads",
+        "Gives features other faces by hand, in the order add, take, merge, make, then holes their fits and threads, and saves the "
+        "project. Roles and sizes follow from the faces; recognition keeps what was changed.",
     )
     made.add_argument(
         "--add",
@@ -58,6 +62,20 @@ def add(commands: Any) -> None:
         help="make a feature of faces, taken from the ones that have them; may be repeated",
     )
     made.add_argument(
+        "--fit",
+        action="append",
+        default=[],
+        metavar="ID,...=FIT",
+        help="demand a fit of holes, as in hole-01,hole-02=H7 or hole-03=+0.021/0; nothing after = takes it away; may be repeated",
+    )
+    made.add_argument(
+        "--thread",
+        action="append",
+        default=[],
+        metavar="ID,...=THREAD",
+        help="demand a thread in holes, as in hole-01=M6, or hole-01=M6:12 where it is 12 mm deep; may be repeated",
+    )
+    made.add_argument(
         "--out", type=Path, required=True, metavar="FILE", help="project to write (.trunnion)"
     )
     made.set_defaults(run=run)
@@ -66,10 +84,12 @@ def add(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Change the features, save the project and print those that a person changed."""
     from trunnion.pipeline.planning import face_edits
+    from trunnion.pipeline.planning.hole_demands import with_hole_demand
     from trunnion.store.project_file import PROJECT_SUFFIX
 
-    if not (options.add or options.take or options.merge or options.make):
-        raise BadCall("nothing to change: give --add, --take, --merge or --make")
+    demands = _demands(options)
+    if not (options.add or options.take or options.merge or options.make) and not demands:
+        raise BadCall("nothing to change: give --add, --take, --merge, --make, --fit or --thread")
     if options.out.suffix.lower() != PROJECT_SUFFIX:
         raise BadCall(f"--out wants a file that ends in {PROJECT_SUFFIX}, not {options.out}")
     check_output(options.out.parent)
@@ -82,22 +102,61 @@ def run(options: argparse.Namespace) -> int:
         session = face_edits.with_merged(engine, session, listed(given))
     for given in options.make:
         session = face_edits.with_feature(engine, session, *_named(given))
+    for ids, demand in demands:
+        session = with_hole_demand(engine, session, ids, demand)
     engine.save(session, options.out)
     assert session.recognition is not None
-    changed = [f for f in session.recognition if f.by_hand]
+    holes = {id for ids, _ in demands for id in ids}
+    changed = [f for f in session.recognition if f.by_hand or f.id in holes]
     if options.json:
         show_json({"file": str(options.out), "features": [f.as_dict() for f in changed]})
     else:
         print(
             table(
                 [
-                    ("feature", "faces"),
-                    *((f.id, " ".join(f"{x.role} {x.face}" for x in f.faces)) for f in changed),
+                    ("feature", "faces", "demand"),
+                    *(
+                        (f.id, " ".join(f"{x.role} {x.face}" for x in f.faces), _words(f))
+                        for f in changed
+                    ),
                 ]
             )
         )
     show_findings(options, session.findings())
     return exit_code(session.findings())
+
+
+def _words(feature: Feature) -> str:
+    """Return what is demanded of a hole, nothing for other features."""
+    return str(feature.attributes.get("thread", feature.attributes.get("fit", "")))
+
+
+def _demands(options: argparse.Namespace) -> list[tuple[tuple[str, ...], HoleDemand]]:
+    """Return the holes that options name, each with what is demanded of them."""
+    from trunnion.plan.holes.demand import fit_demand, thread_demand
+
+    found = []
+    for given in options.fit:
+        ids, words = _holes(given, "hole-01=H7")
+        found.append((ids, fit_demand(words)))
+    for given in options.thread:
+        ids, words = _holes(given, "hole-01=M6:12")
+        thread, colon, depth = words.partition(":")
+        try:
+            deep = float(depth) if colon else 0.0
+        except ValueError:
+            raise BadInput(f"{given}: {depth} is no depth in mm") from None
+        found.append((ids, thread_demand(thread.strip(), deep)))
+    return found
+
+
+def _holes(given: str, example: str) -> tuple[tuple[str, ...], str]:
+    """Return the features before the equals sign of an option's value and the words after it."""
+    names, equals, words = given.partition("=")
+    ids = listed(names)
+    if not equals or not ids:
+        raise BadInput(f"{given}: give holes with commas, = and the demand, as in {example}")
+    return ids, words.strip()
 
 
 def _named(given: str) -> tuple[str, list[int]]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from trunnion import registry
 from trunnion.findings import BadCall, BadInput, Finding, Severity, error
+from trunnion.model.hole_demand import BoreDemand
 from trunnion.model.material import Machine
 from trunnion.model.motion.program import Program, section_of
 from trunnion.model.process import ProcessTree
@@ -19,6 +20,7 @@ from trunnion.model.verdict import Outcome, Verdict
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.work_position import work_positions_of
 from trunnion.plan import setups
+from trunnion.plan.holes.demand import bore_demands
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
 from trunnion.post.settings import OF_MACHINE, PostSettings
@@ -266,5 +268,12 @@ def prove_programs(
         planned_faces=sorted(planned),
         material=context.shop.materials.get(session.process.material),
         facets_fork=fork,
+        bore_demands=_bore_demands(session, context),
     )
     return verdict
+
+
+def _bore_demands(session: Session, context: Context) -> tuple[BoreDemand, ...]:
+    """Return the threads and fits that the part's bores are to have."""
+    found = session.recognition
+    return () if found is None else bore_demands(found, context.shop)

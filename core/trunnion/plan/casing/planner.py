@@ -24,7 +24,7 @@ from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.feasibility import both_sides, refuse_open, too_large, without_axes
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.holes.drive import HoleDrive
-from trunnion.plan.holes.settings import DrillSettings, HoleSettings
+from trunnion.plan.holes.settings import HOLE_SETTINGS
 from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.process import process_of
 from trunnion.plan.settings import RouteSettings
@@ -58,8 +58,7 @@ class CasingPlanner:
         CasingRouteSettings,
         TurningSettings,
         RegionSettings,
-        HoleSettings,
-        DrillSettings,
+        *HOLE_SETTINGS,
     )
     cutter_rules: tuple[str, ...] = CUTTER_RULES
     skins: tuple[float, ...] = (tolerance.CHORD, tolerance.SKIN_CHORD)

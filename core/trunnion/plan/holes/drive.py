@@ -15,7 +15,14 @@ from trunnion.model.guides import GuideCurve, GuideKind
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
-from trunnion.plan.holes.hole import Countersink, HoleShape, PlannedHole, hole_in, nearer_half
+from trunnion.plan.holes.hole import (
+    Countersink,
+    HoleShape,
+    HoleThread,
+    PlannedHole,
+    hole_in,
+    nearer_half,
+)
 from trunnion.plan.plane_guides import GuideSpace, line_along
 from trunnion.plan.settings import HALVES
 from trunnion.plan.setups.frames import cutting_setup
@@ -25,16 +32,18 @@ from trunnion.shop import Stage
 
 NOT_REACHED = "hole.not-reached"
 """Code of the finding on a hole that the setup's tool axis does not reach."""
-SPOT, DRILL, BORE, FLOOR, COUNTERBORE, COUNTERSINK = (
+SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, COUNTERSINK, TAP = (
     "spot",
     "drill",
     "hole_mill",
     "hole_floor",
     "counterbore",
+    "ream",
     "countersink",
+    "tap",
 )
 """Kinds of operations on holes."""
-KINDS = (SPOT, DRILL, BORE, FLOOR, COUNTERBORE, COUNTERSINK)
+KINDS = (SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, COUNTERSINK, TAP)
 OVERLAP = 0.5
 """mm that a floor's cutter begins above what the drill's point has left."""
 
@@ -44,12 +53,13 @@ class HoleDrive:
     """The holes that one operation cuts, in the setup's frame.
 
     `holes` are whole bores, counterbores, or what a drill has left of blind ones, by the operation's `kind`; `sinks` (as many, or none) the
-    cones at their mouths. `faces` are the tags that the operation finishes.
+    cones at their mouths, `threads` (as many, or none) what is cut into them. `faces` are the tags that the operation finishes.
     """
 
     kind: str
     holes: tuple[PlannedHole, ...]
     sinks: tuple[Countersink, ...] = ()
+    threads: tuple[HoleThread, ...] = ()
     faces: tuple[int, ...] = ()
 
     @property
@@ -95,6 +105,7 @@ def hole_drive(
         )
     holes: list[PlannedHole] = []
     sinks: list[Countersink] = []
+    threads: list[HoleThread] = []
     findings: list[Finding] = []
     for id in operation.all_features:
         try:
@@ -108,11 +119,18 @@ def hole_drive(
         holes += parts
         if operation.kind == COUNTERSINK and shape.countersink is not None:
             sinks.append(shape.countersink)
+        if operation.kind == TAP and shape.thread is not None:
+            threads.append(shape.thread)
     if operation.own_faces:
         own = [bool(set(h.faces) & set(operation.faces)) for h in holes]
         holes, sinks = list(compress(holes, own)), list(compress(sinks, own))
+        threads = list(compress(threads, own))
     drive = HoleDrive(
-        kind=operation.kind, holes=tuple(holes), sinks=tuple(sinks), faces=operation.faces
+        kind=operation.kind,
+        holes=tuple(holes),
+        sinks=tuple(sinks),
+        threads=tuple(threads),
+        faces=operation.faces,
     )
     return drive, tuple(findings)
 
@@ -131,10 +149,10 @@ def not_reached(feature: Feature, reason: str) -> Finding:
 def no_tool(
     stage: Stage, features: Sequence[Feature], faces: Iterable[int], missing: Candidates
 ) -> Finding:
-    """Return the finding that no tool of the catalogue fits what a stage cuts of some holes: an error, but for flat floors a warning, for
-    over these drills leave their points."""
+    """Return the finding that no tool of the catalogue fits what a stage cuts of some holes: an error, but a warning for what is done to a
+    bore that is made: its flat floor, over which the drill leaves its point, its fit, its thread."""
     names = ", ".join(f.id for f in features)
-    return (warning if stage.kind == FLOOR else error)(
+    return (warning if stage.kind in (FLOOR, REAM, TAP) else error)(
         "route.no-cutter",
         f"{names}: {missing.reason} ({stage.name})",
         *(f.id for f in features),
@@ -155,6 +173,12 @@ def _parts(operation: Operation, shape: HoleShape, process: ProcessTree) -> tupl
         return shape.counterbores
     if operation.kind == COUNTERSINK and shape.countersink is None:
         raise Refused(f"{shape.bore.feature}: it has no countersink; correct the feature")
+    if operation.kind == TAP and shape.thread is None:
+        raise Refused(
+            f"{shape.bore.feature}: no thread is demanded in it; name its thread, or delete the operation"
+        )
+    if operation.kind in (REAM, TAP):
+        return (shape.narrow,)
     if operation.kind == FLOOR:
         drilled = _drilled_by(operation, shape.bore.feature, process)
         return (below_point(shape.bore, drilled),)

@@ -3,8 +3,8 @@
 The sizes are those of `docs/words.md` (hole): `x`, `y`, `top_z` of the mouth in the recognition's frame, `diameter`, `depth` from the mouth
 to the end of the full diameter, `through`, and where it has them `point_angle`, `counterbore_diameter` and `counterbore_depth`,
 `countersink_diameter` and `countersink_angle`; further those of stepped holes (`diameters`, `step_depths`), of conical shoulders
-(`shoulder_angle`), ball-shaped bottoms (`bottom_radius`) and tapers (`taper_angle`). `direction` is the way out of the hole where that is
-not the frame's z.
+(`shoulder_angle`), ball-shaped bottoms (`bottom_radius`) and tapers (`taper_angle`), and of a thread that is demanded. `direction` is the
+way out of the hole where that is not the frame's z.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ FLAT = 180.0
 """Point angle of a flat bottom, degrees."""
 FLAT_WITHIN = 0.05
 """Degrees: as far as directions are held to be parallel (`tolerance.ANGLE`)."""
+THREAD_SIZES = ("thread_diameter", "thread_pitch", "thread_depth")
+"""Sizes of the thread that is demanded in a hole (`plan.holes.demand`)."""
 BACK = "back_"
 """Stands before the names of sizes of a through hole's far end."""
 NEEDED = ("x", "y", "top_z", "diameter", "depth")
@@ -89,12 +91,30 @@ class Countersink:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class HoleThread:
+    """The thread in a bore: nominal `diameter` and `pitch` mm, full down to `depth` mm below the bore's beginning, 0: as deep as may be."""
+
+    diameter: float
+    pitch: float
+    depth: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class HoleShape:
-    """A hole's parts: the bore, and where it has them its counterbores, the narrowest and deepest first, and the countersink."""
+    """A hole's parts: the bore, and where it has them its counterbores, the narrowest and deepest first, the countersink, and the thread
+    that is demanded in its bore."""
 
     bore: PlannedHole
     counterbores: tuple[PlannedHole, ...] = ()
     countersink: Countersink | None = None
+    thread: HoleThread | None = None
+
+    @property
+    def narrow(self) -> PlannedHole:
+        """The bore from where it begins to be as narrow as it is: from the floor of the deepest counterbore."""
+        if not self.counterbores:
+            return self.bore
+        return replace(self.bore, top=self.counterbores[0].bottom)
 
 
 def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
@@ -144,7 +164,22 @@ def hole_in(feature: Feature, frame: Frame, setup: Frame) -> HoleShape:
         bore=bore,
         counterbores=_counterbores(feature, bore, end),
         countersink=_countersink(feature, end),
+        thread=thread_of(feature),
     )
+
+
+def thread_of(feature: Feature) -> HoleThread | None:
+    """Return the thread that is demanded in a hole, None where there is none."""
+    diameter, pitch, depth = (hole_size(feature, name) for name in THREAD_SIZES)
+    if pitch <= 0.0 or diameter <= 0.0:
+        return None
+    return HoleThread(diameter=diameter, pitch=pitch, depth=depth)
+
+
+def bore_start(feature: Feature) -> float:
+    """Return how deep below a hole's mouth its narrowest bore begins, mm."""
+    steps = _steps(feature, hole_size(feature, "diameter"), hole_size(feature, "depth"), "")
+    return steps[0][1] if steps else 0.0
 
 
 def nearer_half(shape: HoleShape) -> HoleShape:
@@ -156,9 +191,10 @@ def nearer_half(shape: HoleShape) -> HoleShape:
 
 
 def is_plain_through(feature: Feature) -> bool:
-    """Return whether a hole goes through and is as wide at both ends: it may be made from either of them."""
+    """Return whether a hole goes through and is as wide at both ends, its thread too: it may be made from either of them."""
     return (
         bool(_word(feature, "through"))
+        and hole_size(feature, "thread_depth") == 0.0
         and not _is_stepped(feature)
         and not is_wider_behind(feature)
     )
@@ -178,12 +214,13 @@ def _counterbores(feature: Feature, bore: PlannedHole, end: str) -> tuple[Planne
             core=bore.diameter,
             faces=feature.with_role("counterbore_side", "counterbore_floor"),
         )
-        for diameter, depth in _steps(feature, bore, end)
+        for diameter, depth in _steps(feature, bore.diameter, bore.depth, end)
     )
 
 
-def _steps(feature: Feature, bore: PlannedHole, end: str) -> list[tuple[float, float]]:
-    """Return diameter and depth of the wider parts at a hole's mouth (`end` is empty) or at its far end, from the bore outwards.
+def _steps(feature: Feature, bore: float, deep: float, end: str) -> list[tuple[float, float]]:
+    """Return diameter and depth of the parts wider than the `bore` (mm) at the mouth (`end` is empty) or at the far end of a hole that is
+    `deep` mm, from the bore outwards.
 
     Of three diameters and more, `diameters` with `step_depths` tell them from the mouth down; else the counterbore's own sizes.
     """
@@ -191,15 +228,15 @@ def _steps(feature: Feature, bore: PlannedHole, end: str) -> list[tuple[float, f
     if isinstance(diameters, tuple) and isinstance(depths, tuple):
         steps = list(zip(map(float, diameters), map(float, depths), strict=False))
         if end:
-            begins = [0.0, *(deep for _, deep in steps)]
-            steps = [(d, bore.depth - low) for (d, _), low in zip(steps, begins, strict=False)]
+            begins = [0.0, *(low for _, low in steps)]
+            steps = [(d, deep - low) for (d, _), low in zip(steps, begins, strict=False)]
             steps.reverse()
     else:
         names = f"{end}counterbore_diameter", f"{end}counterbore_depth"
         steps = [(hole_size(feature, names[0]), hole_size(feature, names[1]))]
     found: list[tuple[float, float]] = []
     for diameter, depth in steps:
-        if diameter <= bore.diameter + tolerance.SLIVER or depth <= 0.0:
+        if diameter <= bore + tolerance.SLIVER or depth <= 0.0:
             break
         found.append((diameter, depth))
     return found[::-1]

@@ -23,10 +23,13 @@ from trunnion.plan.holes.drive import (
     COUNTERSINK,
     DRILL,
     FLOOR,
+    REAM,
     SPOT,
+    TAP,
     no_tool,
     not_reached,
 )
+from trunnion.plan.holes.finish_tools import BoreFinish, bore_finish, drill_tolerance
 from trunnion.plan.holes.hole import (
     HoleShape,
     PlannedHole,
@@ -35,13 +38,19 @@ from trunnion.plan.holes.hole import (
     hole_size,
     is_plain_through,
 )
-from trunnion.plan.holes.settings import DrillSettings, HoleSettings
+from trunnion.plan.holes.settings import (
+    MILL_ALLOWANCE,
+    DrillSettings,
+    HoleSettings,
+    ReamSettings,
+    TapSettings,
+)
 from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups.frames import Direction, cutting_setup
 from trunnion.plan.setups.state import SetupPlanState
 from trunnion.plan.tool_choice import Candidates
-from trunnion.settings import choose
+from trunnion.settings import Value, choose
 from trunnion.shop import Stage
 from trunnion.units import trimmed
 
@@ -51,7 +60,8 @@ SAME_SIZE = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SetupHole:
-    """A hole seen along its own axis in the setup that makes it (`state`), with the drills for its bore, or the mills where no drill fits.
+    """A hole seen along its own axis in the setup that makes it (`state`), with the drills for its bore, or the mills where no drill fits,
+    and what its demand asks for after these: `before` is the bore as they make it.
 
     `breakthrough` is how far (mm) a tool goes on past the end of a through hole.
     """
@@ -63,8 +73,19 @@ class SetupHole:
     around: HoleSpace
     drills: Candidates
     mills: Candidates
+    before: PlannedHole
+    finish: BoreFinish | None
     settings: HoleSettings
     breakthrough: float
+
+    @property
+    def allowance(self) -> float:
+        """What a milled bore keeps on its side for the reamer, mm."""
+        return 0.5 * (self.shape.bore.diameter - self.before.diameter)
+
+    def bored_faces(self) -> tuple[int, ...]:
+        """Return the faces that making the bore finishes: of one that is reamed after it not its side."""
+        return self.feature.with_role("bottom") if self.allowance > 0.0 else self.before.faces
 
     def mills_for(self, part: PlannedHole) -> Candidates:
         """Return the end mills that mill a part of the hole, gone down from its mouth."""
@@ -81,6 +102,8 @@ def reached_holes(state: SetupPlanState, holes: Sequence[Feature]) -> tuple[Setu
         groups=SkinGroups.of(state.context.skin(tolerance.CHORD, state.progress)),
         settings=choose(HoleSettings, state.choices),
         drilling=choose(DrillSettings, state.choices),
+        reaming=choose(ReamSettings, state.choices),
+        tapping=choose(TapSettings, state.choices),
     )
     other = state.turned_over()
     for feature in state.progress.each(holes):
@@ -104,6 +127,8 @@ class _Planning:
     groups: SkinGroups
     settings: HoleSettings
     drilling: DrillSettings
+    reaming: ReamSettings
+    tapping: TapSettings
     spaces: dict[tuple[str, Direction], HoleSpace] = field(default_factory=dict)
 
     def reached(self, state: SetupPlanState, feature: Feature) -> SetupHole:
@@ -113,6 +138,17 @@ class _Planning:
         shape = hole_in(feature, state.recognition.frame, around.space.setup.frame)
         if not around.is_open((shape.bore, *shape.counterbores)[-1]):
             raise Refused(f"{feature.id}: the part covers its mouth")
+        finish = bore_finish(
+            feature,
+            shape,
+            state.cutters,
+            around,
+            self.reaming,
+            self.tapping,
+            state.material,
+            state.shop,
+        )
+        before = shape.bore if finish is None else finish.before
         hole = SetupHole(
             feature=feature,
             state=state,
@@ -120,19 +156,21 @@ class _Planning:
             shape=shape,
             around=around,
             drills=drills_for(
-                shape.bore,
+                before,
                 state.cutters("drill"),
                 around,
-                self.settings.diameter_tolerance,
+                drill_tolerance(finish, self.settings),
                 self.drilling.breakthrough,
             ),
             mills=Candidates(tools=()),
+            before=before,
+            finish=finish,
             settings=self.settings,
             breakthrough=self.drilling.breakthrough,
         )
         if hole.drills.tools:
             return hole
-        hole = replace(hole, mills=hole.mills_for(shape.bore))
+        hole = replace(hole, mills=hole.mills_for(before))
         if hole.drills.hindered and not hole.mills.tools:
             raise Refused(f"{feature.id}: {hole.drills.reason}")
         return hole
@@ -190,6 +228,8 @@ def plan_holes(state: SetupPlanState, stage: Stage, holes: Sequence[SetupHole]) 
             round(part.depth, SAME_SIZE),
             part.through,
             found.tools[0].name,
+            hole.allowance,
+            hole.shape.thread,
         )
         groups.setdefault(key, []).append((hole, part, found))
     state.findings += [
@@ -214,9 +254,17 @@ def _add(stage: Stage, group: Sequence[tuple[SetupHole, PlannedHole, Candidates]
         faces=tuple(t for _, p, _ in group for t in p.faces),
         why=f"{number} of D {trimmed(part.diameter, 3)}, {trimmed(deepest, 2)} mm deep: {tool.name} reaches their bottoms and "
         "keeps clear of what stands around them.",
+        choices=_own_choices(stage, first),
         direction=first.direction,
         others=tuple(h.feature.id for h, _, _ in group[1:]),
     )
+
+
+def _own_choices(stage: Stage, hole: SetupHole) -> dict[str, Value]:
+    """Return the settings that an operation has for itself: what milling a bore leaves for the reamer."""
+    if stage.kind in (BORE, FLOOR) and hole.allowance > 0.0:
+        return {MILL_ALLOWANCE: hole.allowance}
+    return {}
 
 
 Made = tuple[PlannedHole, Candidates] | None
@@ -227,7 +275,7 @@ def _spotted(hole: SetupHole) -> Made:
     if not hole.settings.spot or not hole.drills.tools:
         return None
     drills = sorted(hole.state.cutters("spot"), key=lambda t: (-t.diameter, t.name))
-    return replace(hole.shape.bore, faces=()), Candidates(
+    return replace(hole.before, faces=()), Candidates(
         tools=tuple(drills),
         reason="the catalogue has no spotting drill for this material",
         remedy="add one to the tools folder",
@@ -235,16 +283,21 @@ def _spotted(hole: SetupHole) -> Made:
 
 
 def _drilled(hole: SetupHole) -> Made:
-    return None if hole.mills.tools else (hole.shape.bore, either(hole.drills, hole.mills))
+    if hole.mills.tools:
+        return None
+    bore = replace(hole.before, faces=hole.bored_faces())
+    return bore, either(hole.drills, hole.mills)
 
 
 def _milled(hole: SetupHole) -> Made:
-    return (hole.shape.bore, hole.mills) if hole.mills.tools else None
+    if not hole.mills.tools:
+        return None
+    return replace(hole.before, faces=hole.bored_faces()), hole.mills
 
 
 def _floored(hole: SetupHole) -> Made:
     """Return the flat floor that a drill has left its point over."""
-    bore = hole.shape.bore
+    bore = hole.before
     if not bore.is_flat or not hole.drills.tools:
         return None
     return replace(bore, faces=hole.feature.with_role("bottom")), hole.mills_for(bore)
@@ -267,6 +320,18 @@ def _sunk(hole: SetupHole) -> Made:
     return replace(hole.shape.bore, diameter=sink.diameter, faces=faces), found
 
 
+def _finished(kind: str) -> Callable[[SetupHole], Made]:
+    """Return the rule of reaming or tapping: the bore whose demand asks for it."""
+
+    def rule(hole: SetupHole) -> Made:
+        if hole.finish is None or hole.finish.kind != kind:
+            return None
+        part = replace(hole.shape.narrow, faces=hole.feature.with_role("side"))
+        return part, hole.finish.found
+
+    return rule
+
+
 RULES: dict[str, Callable[[SetupHole], Made]] = {
     SPOT: _spotted,
     DRILL: _drilled,
@@ -274,5 +339,7 @@ RULES: dict[str, Callable[[SetupHole], Made]] = {
     FLOOR: _floored,
     COUNTERBORE: _counterbored,
     COUNTERSINK: _sunk,
+    REAM: _finished(REAM),
+    TAP: _finished(TAP),
 }
 """What a stage of a kind cuts of a hole, with the tools for it."""

@@ -17,7 +17,7 @@ from trunnion.plan.feasibility import both_sides, refuse_open, too_large, withou
 from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
-from trunnion.plan.holes.settings import DrillSettings, HoleSettings
+from trunnion.plan.holes.settings import HOLE_SETTINGS
 from trunnion.plan.impeller.cutters import sizes_of
 from trunnion.plan.impeller.drives import channel_driven
 from trunnion.plan.impeller.route import CUTTER_RULES, ImpellerPlanState, make_impeller_route
@@ -45,8 +45,7 @@ class ImpellerPlanner:
     settings: tuple[type, ...] = (
         RouteSettings,
         ImpellerRouteSettings,
-        HoleSettings,
-        DrillSettings,
+        *HOLE_SETTINGS,
     )
     cutter_rules: tuple[str, ...] = CUTTER_RULES
     skins: tuple[float, ...] = (tolerance.CHORD,)

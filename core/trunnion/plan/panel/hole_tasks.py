@@ -9,7 +9,8 @@ from trunnion.findings import Refused
 from trunnion.geometry.plane.region import EMPTY_REGION
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
-from trunnion.plan.holes.drive import no_tool, not_reached
+from trunnion.plan.holes.drive import REAM, TAP, no_tool, not_reached
+from trunnion.plan.holes.finish_tools import BoreFinish, bore_finish, drill_tolerance
 from trunnion.plan.holes.hole import (
     HoleShape,
     PlannedHole,
@@ -17,7 +18,13 @@ from trunnion.plan.holes.hole import (
     is_wider_behind,
     nearer_half,
 )
-from trunnion.plan.holes.settings import DrillSettings, HoleSettings
+from trunnion.plan.holes.settings import (
+    MILL_ALLOWANCE,
+    DrillSettings,
+    HoleSettings,
+    ReamSettings,
+    TapSettings,
+)
 from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
@@ -42,11 +49,14 @@ class HoleFit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HoleReach:
-    """A hole as a setup reaches it, with the drills for its bore, or the end mills where no drill fits."""
+    """A hole as a setup reaches it, with the drills for its bore, or the end mills where no drill fits, and what its demand asks for after
+    these: `before` is the bore as they make it."""
 
     shape: HoleShape
     drills: Candidates
     mills: Candidates | None
+    before: PlannedHole
+    finish: BoreFinish | None
 
     @property
     def has_tools(self) -> bool:
@@ -56,7 +66,8 @@ class HoleReach:
 
 @dataclass(slots=True, kw_only=True)
 class HolePlanning:
-    """What is known of a setup's holes while it is planned: their shapes, the drills for each, and what stands around them."""
+    """What is known of a setup's holes while it is planned: their shapes, the drills for each, the bores as these make them, what comes
+    after that, and what stands around them."""
 
     shapes: dict[str, HoleShape]
     around: HoleSpace
@@ -64,6 +75,8 @@ class HolePlanning:
     drilling: DrillSettings
     drills: dict[str, Candidates]
     mills: dict[str, Candidates]
+    bores: dict[str, PlannedHole] = field(default_factory=dict)
+    finishes: dict[str, BoreFinish] = field(default_factory=dict)
     reaches: dict[tuple[str, bool], HoleReach] = field(default_factory=dict)
 
 
@@ -78,15 +91,28 @@ def hole_reach(state: PanelPlanState, feature: Feature, half: bool = False) -> H
             )
         if half:
             shape = nearer_half(shape)
+        finish = bore_finish(
+            feature,
+            shape,
+            lambda use: state.shop.tools_for(state.material.iso_group, use),
+            known.around,
+            choose(ReamSettings, state.choices),
+            choose(TapSettings, state.choices),
+            state.material,
+            state.shop,
+        )
+        before = shape.bore if finish is None else finish.before
         drills = drills_for(
-            shape.bore,
+            before,
             state.shop.tools_for(state.material.iso_group, "drill"),
             known.around,
-            known.settings.diameter_tolerance,
+            drill_tolerance(finish, known.settings),
             known.drilling.breakthrough,
         )
-        mills = None if drills.tools else _mills(state, known, shape.bore, shape.bore.top)
-        known.reaches[feature.id, half] = HoleReach(shape=shape, drills=drills, mills=mills)
+        mills = None if drills.tools else _mills(state, known, before, before.top)
+        known.reaches[feature.id, half] = HoleReach(
+            shape=shape, drills=drills, mills=mills, before=before, finish=finish
+        )
     return known.reaches[feature.id, half]
 
 
@@ -127,6 +153,9 @@ def _planning(state: PanelPlanState, stage: Stage, features: Sequence[Feature]) 
         if feature.id in state.bored:
             continue
         known.drills[feature.id] = reached.drills
+        known.bores[feature.id] = reached.before
+        if reached.finish is not None:
+            known.finishes[feature.id] = reached.finish
         if reached.mills is not None:
             known.mills[feature.id] = reached.mills
     return known
@@ -167,8 +196,8 @@ def _spot_tasks(
         remedy="add one to the tools folder",
     )
     fitted = [
-        HoleFit(feature=f, hole=shape.bore, found=found)
-        for f, shape in _bored_here(state, known, stage, features)
+        HoleFit(feature=f, hole=known.bores[f.id], found=found)
+        for f, _ in _bored_here(state, known, stage, features)
         if known.drills[f.id].tools
     ]
     # One spotting drill serves holes of all sizes: its cone says how wide.
@@ -183,10 +212,11 @@ def _drill_tasks(
     fitted = [
         HoleFit(
             feature=f,
-            hole=shape.bore,
+            hole=known.bores[f.id],
             found=either(known.drills[f.id], known.mills.get(f.id, Candidates(tools=()))),
+            faces=_bored_faces(known, f),
         )
-        for f, shape in _bored_here(state, known, stage, features)
+        for f, _ in _bored_here(state, known, stage, features)
         if known.drills[f.id].tools or not known.mills[f.id].tools
     ]
     return _tasks(
@@ -199,11 +229,59 @@ def _mill_tasks(
 ) -> list[OperationTask]:
     known = _planning(state, stage, features)
     fitted = [
-        HoleFit(feature=f, hole=shape.bore, found=known.mills[f.id])
-        for f, shape in _bored_here(state, known, stage, features)
+        HoleFit(
+            feature=f,
+            hole=known.bores[f.id],
+            found=known.mills[f.id],
+            faces=_bored_faces(known, f),
+        )
+        for f, _ in _bored_here(state, known, stage, features)
         if f.id in known.mills and known.mills[f.id].tools
     ]
-    return _tasks(state, stage, fitted, _size, _own)
+    return _milled(state, known, stage, fitted)
+
+
+def _milled(
+    state: PanelPlanState, known: HolePlanning, stage: Stage, fitted: Iterable[HoleFit]
+) -> list[OperationTask]:
+    """Return the tasks of milling bores: what is reamed after it keeps its allowance."""
+
+    def allowance(feature: str) -> float:
+        return 0.5 * (known.shapes[feature].bore.diameter - known.bores[feature].diameter)
+
+    tasks = _tasks(state, stage, fitted, lambda hole: (*_size(hole), allowance(hole.feature)), _own)
+    return [
+        replace(t, choices={MILL_ALLOWANCE: left}) if (left := allowance(t.feature)) > 0.0 else t
+        for t in tasks
+    ]
+
+
+def _bored_faces(known: HolePlanning, feature: Feature) -> tuple[int, ...] | None:
+    """Return the faces that making a bore finishes, None: all of its own; of one that is reamed after it not its side."""
+    finish = known.finishes.get(feature.id)
+    if finish is None or finish.kind != REAM or not finish.found.tools:
+        return None
+    return feature.with_role("bottom")
+
+
+def _finish_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    """Ask for the reaming or tapping of bores that a stage is for."""
+    known = _planning(state, stage, features)
+    fitted = [
+        HoleFit(
+            feature=f,
+            hole=shape.narrow,
+            found=known.finishes[f.id].found,
+            faces=f.with_role("side"),
+        )
+        for f, shape in _bored_here(state, known, stage, features)
+        if f.id in known.finishes and known.finishes[f.id].kind == stage.kind
+    ]
+    return _tasks(
+        state, stage, fitted, lambda hole: (*_size(hole), known.shapes[hole.feature].thread), _own
+    )
 
 
 def _floor_tasks(
@@ -215,13 +293,13 @@ def _floor_tasks(
         HoleFit(
             feature=f,
             hole=shape.bore,
-            found=_mills(state, known, shape.bore, shape.bore.top),
+            found=_mills(state, known, known.bores[f.id], shape.bore.top),
             faces=f.with_role("bottom"),
         )
         for f, shape in _bored_here(state, known, stage, features)
         if shape.bore.is_flat and known.drills[f.id].tools
     ]
-    return _tasks(state, stage, fitted, _size, _own)
+    return _milled(state, known, stage, fitted)
 
 
 def _counterbore_tasks(
@@ -372,5 +450,7 @@ HOLE_TASK_MAKERS: Mapping[
     "hole_floor": _floor_tasks,
     "counterbore": _counterbore_tasks,
     "countersink": _countersink_tasks,
+    REAM: _finish_tasks,
+    TAP: _finish_tasks,
 }
 """The rule behind each word that a typical plan gives for the tool of a stage on holes."""

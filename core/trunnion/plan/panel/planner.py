@@ -16,7 +16,7 @@ from trunnion.plan.freeform.keys import PAST_RIM, number
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.freeform.surface_drives import surface_driven
 from trunnion.plan.holes.drive import HoleDrive, holes_driven
-from trunnion.plan.holes.settings import DrillSettings, HoleSettings
+from trunnion.plan.holes.settings import HOLE_SETTINGS
 from trunnion.plan.panel.freeform.drives import OVERHUNG_FLOOR, freeform_drive, pocket_of
 from trunnion.plan.panel.freeform.pocket import FreeformPocket
 from trunnion.plan.panel.freeform.settings import LeaningSettings
@@ -39,8 +39,7 @@ class PanelPlanner:
     settings: tuple[type, ...] = (
         RouteSettings,
         SidesSettings,
-        HoleSettings,
-        DrillSettings,
+        *HOLE_SETTINGS,
         LeaningSettings,
     )
     cutter_rules: tuple[str, ...] = tuple(TASK_MAKERS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -55,6 +56,14 @@ class MillSettings:
         label="Breakthrough",
         help="How far the cutter goes on past the end of a through hole.",
     )
+    allowance: float = setting(
+        0.0,
+        unit="mm",
+        low=0.0,
+        high=5.0,
+        label="Allowance",
+        help="What is left on the side of the bore, for a reamer that comes after.",
+    )
     safety: float = safety()
 
 
@@ -80,6 +89,7 @@ def mill(
     order = short_tour(np.array([h.position for h in drive.holes]), progress)
     for row in progress.each(order):
         hole = drive.holes[row]
+        hole = replace(hole, diameter=hole.diameter - 2.0 * settings.allowance)
         widest = hole.radius - tool.radius
         z = _bottom(hole, tool, settings.breakthrough)
         stopped = _too_wide(hole, tool) or kept_off(builder, hole, z, max(widest, 0.0))

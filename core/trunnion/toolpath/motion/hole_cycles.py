@@ -39,8 +39,10 @@ def top_at(builder: PathBuilder, hole: PlannedHole) -> float:
     return max(hole.top, float(stock.height(hole.position, hole.position, stock.cell)))
 
 
-def cycle_path(builder: PathBuilder, cycles: Sequence[HoleCycle]) -> Toolpath:
-    """Return the path from the clearance height over the first hole to that over the last.
+def cycle_path(
+    builder: PathBuilder, cycles: Sequence[HoleCycle], feed: float | None = None
+) -> Toolpath:
+    """Return the path from the clearance height over the first hole to that over the last, at a feed (mm/min), else at that of the data.
 
     The tool stays as low between holes as stock and fixtures let it: on the retract planes where these are free from hole to hole, else on
     one level over all of the way, as cycles know it (G98).
@@ -57,7 +59,7 @@ def cycle_path(builder: PathBuilder, cycles: Sequence[HoleCycle]) -> Toolpath:
         np.append(first, level),
         np.array([np.append(c.hole.position, c.plane) for c in cycles]),
         [replace(c.cycle, lift=0.0 if stays_low else level - c.plane) for c in cycles],
-        builder.data.feed,
+        builder.data.feed if feed is None else feed,
     )
     pieces = [path, _rapid(np.append(last, builder.clearance))]
     if builder.clearance > level + tolerance.SHORT_MOVE:

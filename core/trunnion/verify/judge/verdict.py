@@ -14,6 +14,7 @@ from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.memory import trim_memory
 from trunnion.model.blank import Blank
+from trunnion.model.hole_demand import BoreDemand
 from trunnion.model.material import Machine, Material
 from trunnion.model.motion.program import Program
 from trunnion.model.tool import Tool
@@ -23,6 +24,7 @@ from trunnion.part.shape.facets import Facets, facets_of
 from trunnion.part.shape.surfaces import Surfaces, surfaces_of
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.coverage import Samples, samples_of
+from trunnion.verify.judge.bore_demands import demand_findings
 from trunnion.verify.judge.coverage import covered
 from trunnion.verify.judge.findings import setup_findings
 from trunnion.verify.judge.operations import block_proof, operation_proofs
@@ -55,13 +57,14 @@ def prove(
     planned_faces: Collection[int] = (),
     material: Material | None = None,
     facets_fork: FacetsFork | None = None,
+    bore_demands: Sequence[BoreDemand] = (),
 ) -> Verdict:
     """Return the verdict on the programs of all setups, in the order they are cut: each finds the stock that those before it left.
 
     `tools` are the catalogue's, for what could be reached at all; `machines` those of the programs, one each (without a program: the one
     that the part could be reached on); `planned_faces` the tags that some operation means to finish. Without a material nothing is said
-    of power. `facets_fork` are the triangles of all faces, where they are begun already. Turning comes first, in setups of its own:
-    raises `BadInput` where it comes later or the blank is none of revolution.
+    of power. `facets_fork` are the triangles of all faces, where they are begun already; `bore_demands` the threads and fits of bores.
+    Turning comes first, in setups of its own: raises `BadInput` where it comes later or the blank is none of revolution.
     """
     turning = in_order(programs)
     turned: TurnedWork | None = None
@@ -89,6 +92,7 @@ def prove(
         facets,
         part.backing,
         turned,
+        bore_demands,
     )
 
 
@@ -105,6 +109,7 @@ def prove_surfaces(
     facets: Facets | None = None,
     unasked: Collection[int] = (),
     turned: TurnedWork | None = None,
+    bore_demands: Sequence[BoreDemand] = (),
 ) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
 
@@ -144,6 +149,7 @@ def prove_surfaces(
             "Judging the moves",
         )
         findings, offers = findings + noted, offers + offered
+    findings += demand_findings(proofs, bore_demands, settings)
     before = None
     if turned is not None:
         before = turned_faces(turned, samples, frames[0], len(surfaces[0].tag))
