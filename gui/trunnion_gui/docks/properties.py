@@ -1,4 +1,4 @@
-"""What is selected, in numbers; an operation's own settings can be changed here."""
+"""What is selected, in numbers; an operation's own settings and what is demanded of holes can be changed here."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.settings import Value
 from trunnion_gui import edits
+from trunnion_gui.docks.hole_demand import HoleDemandFields
 from trunnion_gui.document import Document
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
@@ -96,6 +97,8 @@ class PropertiesDock(QScrollArea):
         self._column.addWidget(self.title)
         self._column.addWidget(self.subtitle)
         self._column.addLayout(self._data)
+        self.demand = HoleDemandFields(document)
+        self._column.addWidget(self.demand)
         self._column.addWidget(self.table)
         self._column.addWidget(self.rules)
         self._column.addLayout(self._forms)
@@ -134,6 +137,7 @@ class PropertiesDock(QScrollArea):
         self.rules.setText(tr("Why: {reasons}").format(reasons="; ".join(rules)))
         self.rules.setVisible(bool(rules))
         self._show_form(operation if selected.kind == "operation" else None)
+        self.demand.show_for(self._selected_features())
 
     def _show(self, title: str, subtitle: str, rows: Rows) -> None:
         self.title.setText(title)
@@ -142,6 +146,14 @@ class PropertiesDock(QScrollArea):
         self.table.setVisible(bool(rows))
         tables.fill(self.table, rows, right=(1,))
         self.table.setFixedHeight(26 * len(rows) + 4)
+
+    def _selected_features(self) -> list[Feature]:
+        """Return the features that are selected, one or several together; none where faces are selected beside them."""
+        selected = self._document.selection.current
+        if selected.kind not in ("feature", "faces"):
+            return []
+        found = [self._document.feature(id) for id in selected.id.split(", ")]
+        return [] if None in found else [f for f in found if f is not None]
 
     def _owner_rows(self, tags: tuple[int, ...]) -> Rows:
         """Return what the selected faces belong to, feature by feature."""

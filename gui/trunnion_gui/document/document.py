@@ -151,6 +151,10 @@ class Document(QObject):
             "change", label, id, {key: value}, finish=lambda state: self.keep(label, state)
         )
 
+    def change_demand(self, ids: tuple[str, ...], label: str, values: dict[str, Value]) -> None:
+        """Demand a fit or a thread of holes: one entry of the history; what depends on it is stale."""
+        self.request("demand", label, ids, values, finish=lambda state: self.keep(label, state))
+
     def copy_operation(self, id: str, feature: str = "") -> None:
         """Copy an operation, to another feature where one is given, and select the copy."""
         there = {o.id for o in self.session.process.operations} if self.session.process else set()

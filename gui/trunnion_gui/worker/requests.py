@@ -14,7 +14,7 @@ from trunnion.findings import Cancelled, Fix, TrunnionError
 from trunnion.model.session import PostedFile, Session
 from trunnion.post.release import release
 from trunnion.progress import Progress
-from trunnion.settings import Declared, Value, choose, declared
+from trunnion.settings import Declared, Value, checked, choose, declared
 from trunnion_gui.worker.drawing import DrawnMesh, drawing_of, drawn_map
 from trunnion_gui.worker.steps import share, until
 
@@ -50,6 +50,8 @@ class SettingsGroup:
 
 OPERATION = "operation"
 """Among the groups of settings by step: what may be changed of a single operation."""
+DEMAND = "demand"
+"""Among the groups of settings by step: what may be demanded of holes."""
 SendEvent = Callable[[str, Any], None]
 Work = Callable[..., Any]
 _writing: set[Work] = set()
@@ -178,6 +180,21 @@ def _change(
     return state_of(engine, engine.with_operation_change(session, operation, change))
 
 
+def _demand(
+    engine: Any,
+    _progress: Progress,
+    _send_event: SendEvent,
+    session: Session,
+    ids: tuple[str, ...],
+    values: dict[str, Value],
+) -> SessionState:
+    from trunnion.pipeline.planning.hole_demands import with_hole_demand
+    from trunnion.plan.holes.settings import HoleDemand
+
+    demand = checked(choose(HoleDemand, values))
+    return state_of(engine, with_hole_demand(engine, session, ids, demand))
+
+
 @writes_files
 def _save(
     engine: Any, progress: Progress, _send_event: SendEvent, session: Session, path: str
@@ -221,6 +238,7 @@ def _guides(
 def _settings(
     engine: Any, _progress: Progress, _send_event: SendEvent
 ) -> dict[str, tuple[SettingsGroup, ...]]:
+    from trunnion.plan.holes.settings import HoleDemand
     from trunnion.plan.manual.operation_change import OperationChange
 
     return {
@@ -228,7 +246,11 @@ def _settings(
             SettingsGroup(c.GROUP, _title(c), tuple(_offered(d) for d in declared(c)))
             for c in classes
         )
-        for step, classes in (*engine.settings().items(), (OPERATION, (OperationChange,)))
+        for step, classes in (
+            *engine.settings().items(),
+            (OPERATION, (OperationChange,)),
+            (DEMAND, (HoleDemand,)),
+        )
     }
 
 
@@ -255,6 +277,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "attach": _attach,
     "fix": _fix,
     "change": _change,
+    DEMAND: _demand,
     "save": _save,
     "write": _write,
     "settings": _settings,
