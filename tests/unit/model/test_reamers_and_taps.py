@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from parts import ROOT
 from trunnion.findings import BadInput
 from trunnion.model.tool.lead import basic_minor_diameter
+from trunnion.post.header import tool_line
 from trunnion.settings import digest
 from trunnion.shop import load_shop
 from trunnion.verify.cutter import lowest_height, outline_of
@@ -156,3 +157,8 @@ def test_a_lead_may_be_given_in_mm(tmp_path):
     (tmp_path / "tools" / "own.toml").write_text(text, "utf-8")
     shop = load_shop(tmp_path)
     assert {t.lead for t in shop.tools_for("N", "tap_through")} == {1.75}
+
+
+def test_a_programs_header_names_the_pitch_of_a_tap():
+    assert tool_line(TAP, "mm").startswith("TOOL 0 TAP-B M6x1 D6 PITCH 1 LENGTH 150 ")
+    assert " R0 " in tool_line(REAMER, "mm")

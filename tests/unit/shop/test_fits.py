@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import pytest
@@ -120,6 +121,50 @@ def test_an_increment_is_the_step_between_two_grades(diameter, grade):
     increment = next(v for most, v in FITS.increments[grade] if diameter <= most)
     fine, coarse = (FITS.limits(f"H{g}", diameter).width for g in (grade - 1, grade))
     assert increment == pytest.approx(1000 * (coarse - fine), abs=1e-6)
+
+
+MULTIPLES = {5: 7, 6: 10, 7: 16, 8: 25, 9: 40, 10: 64, 11: 100, 12: 160, 13: 250}
+"""Standard tolerances over the tolerance unit i, by grade (ISO 286-1:1988, table 7)."""
+
+
+def ranges(rows):
+    """Return the geometric mean in mm and the value in um of each range over 3 mm: up to 3 mm the standard rounds as it likes."""
+    return [(math.sqrt(low * high), value) for (low, _), (high, value) in pairwise(rows)]
+
+
+@pytest.mark.parametrize("grade", MULTIPLES)
+def test_standard_tolerances_follow_the_unit_that_they_are_rounded_from(grade):
+    # i = 0.45 D^(1/3) + 0.001 D, um.
+    for mean, tolerance in ranges(FITS.tolerances[grade]):
+        unit = 0.45 * mean ** (1 / 3) + 0.001 * mean
+        assert tolerance == pytest.approx(MULTIPLES[grade] * unit, rel=0.06, abs=0.7)
+
+
+@pytest.mark.parametrize(
+    ("letter", "factor", "power"),
+    # ISO 286-1:1988, table of formulas for fundamental deviations, D in mm and um.
+    [("D", 16.0, 0.44), ("E", 11.0, 0.41), ("F", 5.5, 0.41), ("G", 2.5, 0.34)],
+)
+def test_deviations_of_clearance_holes_follow_their_formulas(letter, factor, power):
+    for mean, deviation in ranges(FITS.deviations[letter].fine):
+        assert deviation == pytest.approx(factor * mean**power, rel=0.06, abs=0.6)
+
+
+def test_deviations_of_holes_k_to_p_mirror_the_formulas_of_shafts():
+    fine = {letter: [v for _, v in ranges(FITS.deviations[letter].fine)] for letter in "KMNP"}
+    means = [mean for mean, _ in ranges(FITS.deviations["N"].fine)]
+    steps = [
+        a - b
+        for (_, a), (_, b) in zip(
+            ranges(FITS.tolerances[7]), ranges(FITS.tolerances[6]), strict=True
+        )
+    ]
+    for mean, step, k, m, n, p in zip(means, steps, *(fine[x] for x in "KMNP"), strict=True):
+        # k: 0.6 D^(1/3); m: IT7 - IT6; n: 5 D^0.34; p: IT7 and up to 5 um, each rounded.
+        assert -k == pytest.approx(0.6 * mean ** (1 / 3), abs=1.0)
+        assert -m == pytest.approx(step, abs=1.0)
+        assert -n == pytest.approx(5 * mean**0.34, rel=0.06, abs=1.0)
+        assert 0.0 <= -p - FITS.limits("H7", mean).width * 1000 <= 5.0
 
 
 @pytest.mark.parametrize(

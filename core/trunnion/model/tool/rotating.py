@@ -224,10 +224,11 @@ class Tool:
         )
 
     def header_sizes(self) -> tuple[tuple[str, float], ...]:
-        """Return the lengths mm that a program's header names, each with the word before it."""
+        """Return the lengths mm that a program's header names, each with the word before it: of a tap its pitch in the place of a corner
+        radius."""
         return (
             ("D", self.diameter),
-            ("R", self.corner_radius),
+            ("PITCH ", self.pitch) if self.form == TAP else ("R", self.corner_radius),
             ("LENGTH ", self.gauge_length),
             ("STICKOUT ", self.stickout),
         )
