@@ -94,6 +94,10 @@ class Tool:
             raise ValueError(
                 f"tool {self.name}: flute, neck, stickout and gauge length must grow in this order"
             )
+        if self.form not in (REAMER, TAP) and (self.pitch or self.lead or self.fit):
+            raise ValueError(
+                f"tool {self.name}: pitch, lead and fit are those of reamers and taps, not of the form {self.form}"
+            )
         wrong = CHECKS[self.form](self)
         if wrong:
             raise ValueError(f"tool {self.name}: {wrong}")
