@@ -15,7 +15,7 @@ from trunnion.model.screw_thread import ScrewThread
 from trunnion.model.tool import Tool, TurningTool
 from trunnion.settings import digest
 from trunnion.shop.cutters import Cutter, load_cutters, load_holders
-from trunnion.shop.drilling import load_drilling, load_reaming, load_tapping
+from trunnion.shop.drilling import load_boring, load_drilling, load_reaming, load_tapping
 from trunnion.shop.fits import FitTables, load_fits
 from trunnion.shop.machines import load_machines
 from trunnion.shop.materials import load_materials
@@ -31,8 +31,8 @@ class Shop:
     """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`).
 
     `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters. `drilling` says by
-    ISO 513 group or by material what drills bear, `reaming` and `tapping` what reamers and taps do, `turning_data` what inserts do; `fits`
-    and `threads` have the limits of holes and screw threads.
+    ISO 513 group or by material what drills bear, `reaming`, `boring` and `tapping` what reamers, boring bars and taps do, `turning_data`
+    what inserts do; `fits` and `threads` have the limits of holes and screw threads.
     """
 
     cutters: tuple[Cutter, ...]
@@ -43,6 +43,7 @@ class Shop:
     drilling: Mapping[str, DrillingTable] = field(default_factory=dict)
     turning_data: Mapping[str, TurningTable] = field(default_factory=dict)
     reaming: Mapping[str, DrillingTable] = field(default_factory=dict)
+    boring: Mapping[str, DrillingTable] = field(default_factory=dict)
     tapping: Mapping[str, TappingTable] = field(default_factory=dict)
     fits: FitTables = field(default_factory=FitTables)
     threads: ThreadTables = field(default_factory=ThreadTables)
@@ -65,6 +66,7 @@ class Shop:
             self.drilling,
             self.turning_data,
             self.reaming,
+            self.boring,
             self.tapping,
             self.fits,
             self.threads,
@@ -85,6 +87,10 @@ class Shop:
     def reaming_for(self, material: Material) -> DrillingTable:
         """Return what reamers bear in a material, and the allowance they need, as `drilling_for` does of drills."""
         return _table_of(self.reaming, material, "reaming")
+
+    def boring_for(self, material: Material) -> DrillingTable:
+        """Return what boring bars bear in a material, as `drilling_for` does for drills."""
+        return _table_of(self.boring, material, "boring")
 
     def tapping_for(self, material: Material) -> TappingTable:
         """Return what taps bear in a material, as `drilling_for` does of drills."""
@@ -133,9 +139,9 @@ class Shop:
 def load_shop(user_folder: Path | None = None) -> Shop:
     """Return the catalogues, checked; raise `BadInput` with file, entry and field of the first fault.
 
-    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `reaming`, `tapping`, `fits`,
-    `threads`, `machines`, `plans`, each with TOML files) and adds entries or replaces those of the same name. What is missing there is not
-    needed.
+    `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `reaming`, `boring`,
+    `tapping`, `fits`, `threads`, `machines`, `plans`, each with TOML files) and adds entries or replaces those of the same name. What is
+    missing there is not needed.
     """
     return Shop(
         cutters=load_cutters(load_holders(user_folder), user_folder),
@@ -146,6 +152,7 @@ def load_shop(user_folder: Path | None = None) -> Shop:
         drilling=load_drilling(user_folder),
         turning_data=load_turning_data(user_folder),
         reaming=load_reaming(user_folder),
+        boring=load_boring(user_folder),
         tapping=load_tapping(user_folder),
         fits=load_fits(user_folder),
         threads=load_threads(user_folder),

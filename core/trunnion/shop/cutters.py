@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from trunnion.model.tool import BUTTON, REAMER, TAP, Holder, Tool
+from trunnion.model.tool import BORING_BAR, BUTTON, REAMER, TAP, Holder, Tool
 from trunnion.shop.reading import CatalogueEntry, by_name, entries
 from trunnion.units import MM_PER_INCH, trimmed
 
@@ -22,6 +22,7 @@ USES = (
     "spot",
     "countersink",
     "ream",
+    "bore",
     "tap_through",
     "tap_blind",
     "hole_mill",
@@ -30,8 +31,19 @@ USES = (
 )
 END_MILL = "end mill"
 """A form that the corner radius decides: flat, bull or ball."""
-KINDS = (END_MILL, "taper", "barrel", "t-slot", "drill", REAMER, TAP, BUTTON, "form")
-_WITHOUT_CORNER = ("drill", REAMER, TAP, "form")
+KINDS = (
+    END_MILL,
+    "taper",
+    "barrel",
+    "t-slot",
+    "drill",
+    REAMER,
+    BORING_BAR,
+    TAP,
+    BUTTON,
+    "form",
+)
+_WITHOUT_CORNER = ("drill", REAMER, BORING_BAR, TAP, "form")
 """Forms whose entries give no corner radius."""
 _USE = {
     "taper": ("surface",),
@@ -39,6 +51,7 @@ _USE = {
     "t-slot": ("undercut",),
     "drill": ("drill",),
     REAMER: ("ream",),
+    BORING_BAR: ("bore",),
     BUTTON: ("interrupted",),
 }
 """What a form is for unless its entry says so; that of a tap says which holes it is for."""
@@ -79,8 +92,8 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
     A file of tools holds `[tool.NAME]` tables of one cutter each and `[series.NAME]` tables whose `sizes` give one cutter for each
     diameter and corner radius, named `SERIES D12 R3` and what else its form needs: a taper's angle (A3), a barrel's radius (B85), how
     thick a T-slot cutter is (H6); a drill is `SERIES D8.5`, a reamer `SERIES D8`. A tap is named by its thread, `SERIES M6x1`, or
-    `SERIES UNC 1/4-20` where its size says `thread = "1/4-20 UNC"`. `form` is one of `KINDS`. A user's series or tool replaces the
-    program's of the same name.
+    `SERIES UNC 1/4-20` where its size says `thread = "1/4-20 UNC"`, a boring bar by its range, `SERIES D20-26`. `form`
+    is one of `KINDS`. A user's series or tool replaces the program's of the same name.
     """
     found: list[tuple[int, CatalogueEntry]] = []
     for layer, group in entries("tools", user_folder):
@@ -150,10 +163,8 @@ def _series(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> 
         corners = (0.0,) if kind in _WITHOUT_CORNER else size.numbers("corner_radii", 0.0, _LARGEST)
         for corner in corners:
             tool = _tool(entry, size, kind, f"{name} D{trimmed(diameter, 3)}", corner, holders)
-            full = f"{name} {_thread_name(size, tool)}" if kind == TAP else tool.name
-            made.append(
-                Cutter(tool=replace(tool, name=full + _size_name(tool)), suits=suits, use=use)
-            )
+            full = _full_name(name, size, tool)
+            made.append(Cutter(tool=replace(tool, name=full), suits=suits, use=use))
         size.done()
     entry.done()
     return made
@@ -175,6 +186,16 @@ def _size_name(tool: Tool) -> str:
         "t-slot": f"{corner} H{trimmed(tool.flute_length, 3)}",
         **dict.fromkeys(_WITHOUT_CORNER, ""),
     }.get(tool.form, corner)
+
+
+def _full_name(series: str, size: CatalogueEntry, tool: Tool) -> str:
+    """Return the name of a cutter of a series: by its thread, the range that it is set in, or its diameter and what else distinguishes
+    it."""
+    if tool.form == TAP:
+        return f"{series} {_thread_name(size, tool)}"
+    if tool.form == BORING_BAR:
+        return f"{series} D{trimmed(tool.smallest, 3)}-{trimmed(tool.diameter, 3)}"
+    return tool.name + _size_name(tool)
 
 
 def _thread_name(size: CatalogueEntry, tool: Tool) -> str:
@@ -259,6 +280,11 @@ def _shape(series: CatalogueEntry, size: CatalogueEntry, kind: str) -> dict[str,
         return {
             "lead": _given(series, size, "lead").number("lead", 0.0, _LARGEST),
             "fit": _given(series, size, "fit").text("fit"),
+        }
+    if kind == BORING_BAR:
+        return {
+            "lead": _given(series, size, "lead").number("lead", 0.0, _LARGEST),
+            "smallest": size.number("smallest", 0.0, _LARGEST),
         }
     if kind == TAP:
         return _tap_shape(series, size)

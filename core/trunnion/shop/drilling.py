@@ -1,4 +1,4 @@
-"""Speeds and feeds of drills, reamers and taps, by group of materials or by material: every number stands with its source."""
+"""Speeds and feeds of drills, reamers, boring bars and taps, by group of materials or by material: every number stands with its source."""
 
 from __future__ import annotations
 
@@ -25,9 +25,18 @@ def load_drilling(user_folder: Path | None) -> dict[str, DrillingTable]:
 
 def load_reaming(user_folder: Path | None) -> dict[str, DrillingTable]:
     """Return the tables of reamers by their names, as `load_drilling` does those of drills; they have an allowance as well."""
+    return _finishing("reaming", user_folder)
+
+
+def load_boring(user_folder: Path | None) -> dict[str, DrillingTable]:
+    """Return the tables of boring bars by their names, as `load_reaming` does those of reamers."""
+    return _finishing("boring", user_folder)
+
+
+def _finishing(folder: str, user_folder: Path | None) -> dict[str, DrillingTable]:
     return {
-        name: _table(entry, reams=True)
-        for name, entry in by_name(entries("reaming", user_folder)).items()
+        name: _table(entry, finishes=True)
+        for name, entry in by_name(entries(folder, user_folder)).items()
     }
 
 
@@ -48,7 +57,7 @@ def _speed(entry: CatalogueEntry) -> tuple[float, str]:
     return value, source
 
 
-def _table(entry: CatalogueEntry, *, reams: bool = False) -> DrillingTable:
+def _table(entry: CatalogueEntry, *, finishes: bool = False) -> DrillingTable:
     title, (value, speed_source) = entry.text("title"), _speed(entry)
     feeds = entry.table("feeds")
     rows = tuple((d, low, high) for d, low, high in feeds.rows("rows", 3, 0.0, _LARGEST))
@@ -59,7 +68,7 @@ def _table(entry: CatalogueEntry, *, reams: bool = False) -> DrillingTable:
     feeds.done()
     source = f"speed: {speed_source}; feeds: {feed_source}"
     allowances: tuple[tuple[float, float, float], ...] = ()
-    if reams:
+    if finishes:
         allowances, allowance_source = _allowances(entry.table("allowance"))
         source += f"; allowance: {allowance_source}"
     entry.done()

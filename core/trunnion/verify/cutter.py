@@ -140,7 +140,7 @@ def _spans_of(tool: Tool) -> list[Span]:
         ]
     if tool.form == "drill" and tool.point_length > 0.0:
         return [_line(0.0, 0.0, r, tool.point_length), _line(r, tool.point_length, r, top)]
-    if tool.form == "reamer":
+    if tool.form in ("reamer", "boring-bar"):
         lead = tool.lead
         return [*_end_face(r - lead), _line(r - lead, 0.0, r, lead), _line(r, lead, r, top)]
     if tool.form == "tap":

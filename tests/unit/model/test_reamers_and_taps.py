@@ -86,7 +86,15 @@ def test_a_shank_as_thick_as_a_tap_does_not_follow_it_into_the_hole():
         (TAP, {"lead": 0.0}, "needs a lead above 0"),
         (TAP, {"lead": 15.0}, "shorter than its thread"),
         (TAP, {"fit": "H7"}, "no corner radius and no fit"),
-        (TOOLS["DR-K D8"], {"lead": 1.0}, "those of reamers and taps, not of the form drill"),
+        (TOOLS["FB D20-26"], {"smallest": 27.0}, "up to its largest"),
+        (TOOLS["FB D20-26"], {"smallest": 18.0}, "thinner than the smallest"),
+        (TOOLS["FB D20-26"], {"lead": 0.0}, "a lead above 0"),
+        (TOOLS["RE-H7 D10"], {"smallest": 9.0}, "only boring bars"),
+        (
+            TOOLS["DR-K D8"],
+            {"lead": 1.0},
+            "those of reamers, boring bars and taps, not of the form drill",
+        ),
         (TAP, {"neck_diameter": 5.0}, "no thicker than the core, 4.917 mm"),
     ],
 )

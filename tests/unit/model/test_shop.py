@@ -57,6 +57,7 @@ def test_the_catalogue_has_cutters_of_every_form():
         "t-slot",
         "drill",
         "reamer",
+        "boring-bar",
         "tap",
         "button",
         "form",
@@ -296,7 +297,7 @@ def test_a_user_without_a_folder_gets_the_programs_own(tmp_path):
         (
             "teeth = 3",
             'teeth = 3\nform = "saw"',
-            "form knows end mill, taper, barrel, t-slot, drill, reamer, tap, button, form; got 'saw'",
+            "form knows end mill, taper, barrel, t-slot, drill, reamer, boring-bar, tap, button, form; got 'saw'",
         ),
         ("teeth = 3", 'teeth = 3\nform = "taper"', "taper_angle is missing"),
         (

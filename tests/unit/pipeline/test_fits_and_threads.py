@@ -31,12 +31,14 @@ HOLES = (
     hole(20, 45, 6.8, 16.0, point_angle=140.0),
     hole(80, 45, 12, 12.0),
     hole(50, 30, 8),
+    hole(50, 48, 9),
 )
 DEMANDS = {
     "hole-01": fit_demand("H7"),
     "hole-02": thread_demand("M6"),
     "hole-03": thread_demand("M8", 10.0),
     "hole-04": fit_demand("H8"),
+    "hole-06": fit_demand("M7"),
 }
 
 
@@ -69,12 +71,12 @@ def findings(session, *codes):
 def test_fits_and_threads_are_made_and_proven():
     session = proven()[1]
     verdict = session.verdict
-    assert {o.kind for o in session.process.operations} >= {"drill", "ream", "tap"}
+    assert {o.kind for o in session.process.operations} >= {"drill", "ream", "fine_bore", "tap"}
     assert verdict.outcome in (Outcome.PASSED, Outcome.REMARKS)
     assert verdict.gouge <= 0.02 and not verdict.collisions
     assert not [f for f in verdict.findings if "thread" in f.code or "fit" in f.code]
     # What is left is the ring that the reamer's lead leaves at the blind bore's end, a tenth of a millimetre thick.
-    short = [f for p in session.paths for f in p.findings if f.code == "hole.reamed-depth"]
+    short = [f for p in session.paths for f in p.findings if f.code == "hole.finished-depth"]
     assert len(short) == 1 and verdict.coverage > 0.99
 
 
@@ -91,10 +93,10 @@ def test_a_reamer_takes_what_the_drill_has_left_and_a_tap_is_taken_for_its_core(
 @pytest.mark.parametrize(
     ("dialect", "words"),
     [
-        ("linuxcnc", ("G85", "G84")),
-        ("fanuc", ("G85", "G84")),
+        ("linuxcnc", ("G85", "G89", "G84")),
+        ("fanuc", ("G85", "G89", "G84")),
         ("heidenhain", ("CYCL DEF 201", "CYCL DEF 207")),
-        ("sinumerik", ("CYCLE85", "CYCLE84")),
+        ("sinumerik", ("CYCLE85", "CYCLE89", "CYCLE84")),
         ("apt", ("RE-H7 D10", "TAP-B M6x1")),
     ],
 )
@@ -120,7 +122,7 @@ def tapping(section):
 
 
 def reaming(section):
-    return any(b.cycle.kind is CycleKind.REAM for b in section.path.cycles)
+    return any(b.cycle.kind in (CycleKind.REAM, CycleKind.BORE) for b in section.path.cycles)
 
 
 def moved(section, by):
@@ -138,7 +140,7 @@ def test_a_thread_that_nothing_cuts_is_told():
 def test_a_fit_that_nothing_makes_is_told():
     session = proof_of(lambda s: None if reaming(s) else s)
     told = findings(session, "verify.fit")
-    assert sorted(f.text.split(":")[0] for f in told) == ["hole-01", "hole-04"]
+    assert sorted(f.text.split(":")[0] for f in told) == ["hole-01", "hole-04", "hole-06"]
 
 
 def test_a_tap_where_no_thread_is_demanded_fails():

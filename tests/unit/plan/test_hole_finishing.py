@@ -9,13 +9,14 @@ from pytest import approx
 
 from holed import HIGH, hole
 from trunnion.plan.holes.demand import fit_demand, thread_demand, with_demand
-from trunnion.plan.holes.finish_tools import ream_tip, tap_tip, taps_for, thread_end
+from trunnion.plan.holes.finish_tools import bars_for, finish_tip, tap_tip, taps_for, thread_end
 from trunnion.plan.holes.hole import HoleThread
-from trunnion.plan.holes.settings import ReamSettings, TapSettings
+from trunnion.plan.holes.settings import FineBoringSettings, ReamSettings, TapSettings
 from trunnion.settings import choose
 from walled_plates import SHOP, around, route, walled
 
 TAPPING, REAMING = choose(TapSettings, {}), choose(ReamSettings, {})
+BORING = choose(FineBoringSettings, {})
 
 
 def planned(*holes_and_demands, **choices):
@@ -52,12 +53,41 @@ def test_a_bore_that_no_drill_prepares_is_milled_with_the_reamers_allowance():
     assert "hole.mill.allowance" not in mills.get("hole-02", {})
 
 
-def test_a_fit_without_a_reamer_is_made_to_its_nominal_size_and_told():
-    process = planned((hole(30, 30, 10), fit_demand("K7")))
-    assert not of_kind(process, "ream")
-    assert of_kind(process, "drill")[0].tool.diameter == 10.0
+def test_a_fit_that_no_reamer_has_is_bored_by_a_bar_that_is_set_for_it():
+    process = planned((hole(30, 30, 10), fit_demand("K7")), (hole(70, 30, 25.2), fit_demand("H6")))
+    made = {o.feature: o for o in of_kind(process, "fine_bore")}
+    assert not of_kind(process, "ream") and not process.findings
+    bar = made["hole-01"].tool
+    assert (bar.name, bar.diameter, bar.fit) == ("FB D8-11 at D10", 10.0, "K7")
+    assert made["hole-02"].tool.name == "FB D20-26 at D25.2"
+    # What is before it leaves the bar the allowance of the boring table.
+    (drill,) = of_kind(process, "drill")
+    assert drill.feature == "hole-01" and 9.6 <= drill.tool.diameter <= 9.8
+    (milled,) = of_kind(process, "hole_mill")
+    assert milled.choices["hole.mill.allowance"] == approx(0.15)
+    assert made["hole-02"].data.depth == approx(0.3) and made["hole-01"].data.depth == approx(0.2)
+
+
+def test_a_fit_that_nothing_makes_is_made_to_its_nominal_size_and_told():
+    process = planned((hole(30, 30, 4), fit_demand("K7")))
+    assert not of_kind(process, "ream", "fine_bore")
+    assert of_kind(process, "drill")[0].tool.diameter == 4.0
     (told,) = process.findings
-    assert "no reamer of D 10 K7" in told.text and told.severity == "warning" and told.remedy
+    assert "no reamer of D 4 K7" in told.text and "no boring bar" in told.text
+    assert told.severity == "warning" and told.remedy
+
+
+def test_the_range_of_a_boring_bar_ends_at_its_smallest_and_its_largest_diameter():
+    surroundings, bore = around(walled(hole(36, 30, 10.0)))
+    bars = [t for t in SHOP.tools_for("N", "bore") if t.name in ("FB D8-11", "FB D11-15")]
+
+    def found(diameter):
+        wide = replace(bore, diameter=diameter)
+        return [t.name for t in bars_for(wide, "H6", bars, surroundings, BORING).tools]
+
+    assert found(11.0) == ["FB D8-11 at D11", "FB D11-15 at D11"]
+    assert found(8.0) == ["FB D8-11 at D8"] and found(15.0) == ["FB D11-15 at D15"]
+    assert found(7.9) == [] and found(15.1) == []
 
 
 def test_a_coarse_fit_is_drilled():
@@ -118,8 +148,10 @@ def test_the_tips_of_reamers_and_taps():
     through_tap = next(t for t in SHOP.tools if t.name == "TAP-B M6x1")
     _, through = around(walled(hole(30, 30, 10)))
     _, blind = around(walled(hole(30, 30, 10, 12.0, point_angle=140.0)))
-    assert ream_tip(through, reamer, REAMING) == approx(through.bottom - reamer.lead - 1.0)
-    assert ream_tip(blind, reamer, REAMING) == approx(blind.bottom)
+    assert finish_tip(through, reamer, REAMING.breakthrough) == approx(
+        through.bottom - reamer.lead - 1.0
+    )
+    assert finish_tip(blind, reamer, REAMING.breakthrough) == approx(blind.bottom)
     whole, short = (HoleThread(diameter=6.0, pitch=1.0, depth=d) for d in (0.0, 6.0))
     assert tap_tip(through, whole, through_tap, TAPPING) == approx(
         through.bottom - through_tap.lead - 1.0

@@ -17,6 +17,7 @@ from trunnion.plan.cutting.optimize import recomputed
 from trunnion.plan.cutting.peak import is_overload, with_peak
 from trunnion.plan.cutting.power import tapping_torque, tool_power
 from trunnion.plan.holes.cutting_data import hole_data, is_on_holes
+from trunnion.plan.holes.finish_tools import set_to
 from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.repair.feed import with_lower_feed
@@ -243,3 +244,25 @@ def test_power_of_a_reamer_by_hand_is_that_of_its_ring():
     assert data.power == pytest.approx(
         area * 100.0 * STEEL.force * chip**-STEEL.force_exponent / 6e7
     )
+
+
+def test_a_boring_bar_has_speed_feed_and_depth_of_its_own_table():
+    bar = set_to(next(t for t in SHOP.tools if t.name == "FB D20-26"), 22.0, "H6")
+    table = SHOP.boring_for(ALUMINIUM)
+    data = hole_data("fine_bore", bar, ALUMINIUM, MILL, SHOP, CuttingSettings())
+    low, high = table.feeds[0][1:]
+    assert data.speed == pytest.approx(table.speed)
+    assert data.feed / data.spindle == pytest.approx(low + table.feed_share * (high - low))
+    assert data.depth == pytest.approx(0.5 * table.allowance(22.0)[1])
+    # One edge: the ring of the depth of cut at the chip of a lead of 45 degrees.
+    chip = data.feed / data.spindle * math.sqrt(0.5)
+    area = math.pi * (22.0 - data.depth) * data.depth
+    force = ALUMINIUM.force * chip**-ALUMINIUM.force_exponent
+    assert data.power == pytest.approx(area * data.feed * force / 6e7)
+    assert any("boring wrought aluminium" in rule for rule in data.rules)
+
+
+@pytest.mark.parametrize("material", sorted(SHOP.materials))
+def test_every_material_may_be_bored(material):
+    table = SHOP.boring_for(SHOP.material(material))
+    assert table.speed > 0.0 and 0.0 < table.allowance(30.0)[0] < table.allowance(30.0)[1]

@@ -5,6 +5,8 @@ from trunnion.model.tool.holder import Holder as Holder
 from trunnion.model.tool.insert import CORNERS as CORNERS
 from trunnion.model.tool.insert import Insert as Insert
 from trunnion.model.tool.insert import TurningTool as TurningTool
+from trunnion.model.tool.lead import BORING_BAR as BORING_BAR
+from trunnion.model.tool.lead import FINISHING as FINISHING
 from trunnion.model.tool.lead import REAMER as REAMER
 from trunnion.model.tool.lead import TAP as TAP
 from trunnion.model.tool.rotating import BUTTON as BUTTON

@@ -1,4 +1,4 @@
-"""Tools that cut with a chamfered lead and follow a bore: reamers and taps."""
+"""Tools that cut with a chamfered lead and follow a bore: reamers, boring bars and taps."""
 
 from __future__ import annotations
 
@@ -10,10 +10,14 @@ if TYPE_CHECKING:
 
 REAMER = "reamer"
 """The form of tools that bring a bore to its size and fit."""
+BORING_BAR = "boring-bar"
+"""The form of bars in fine boring heads, whose one edge is set to a diameter within a range."""
+FINISHING = (REAMER, BORING_BAR)
+"""Forms that bring a bore to its size along its axis, by a thin ring."""
 TAP = "tap"
 """The form of tools that cut an internal thread into a bore."""
 REAMER_EDGE = 45.0
-"""Degrees between a reamer's lead and its axis (DIN 212, DIN 8093)."""
+"""Degrees between a reamer's lead and its axis (DIN 212, DIN 8093); a boring bar's nose is taken for such a lead."""
 THREAD_HEIGHT = 5.0 / 8.0
 """Height of an internal thread over that of its fundamental triangle (ISO 68-1: H1 = 5/8 H)."""
 
@@ -38,6 +42,19 @@ def wrong_reamer(tool: Tool) -> str:
         return "a reamer needs the fit that it makes, such as H7"
     if tool.flute_length <= tool.lead:
         return f"a reamer's flutes must be longer than its lead, {tool.lead:.3f} mm"
+    return ""
+
+
+def wrong_boring_bar(tool: Tool) -> str:
+    """Return what the numbers of a boring bar lack, or nothing."""
+    if tool.corner_radius != 0.0 or tool.pitch != 0.0:
+        return "a boring bar has no corner radius and no pitch: its nose is its lead"
+    if not 0.0 < tool.lead < tool.flute_length:
+        return "a boring bar needs a lead above 0, the height of its nose, and an insert higher than that"
+    if not 2.0 * tool.lead < tool.smallest <= tool.diameter:
+        return "a boring bar needs the smallest diameter that it is set to, up to its largest"
+    if tool.neck_diameter >= tool.smallest:
+        return "a boring bar is thinner than the smallest diameter that it is set to"
     return ""
 
 

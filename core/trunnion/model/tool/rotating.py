@@ -11,10 +11,13 @@ from trunnion import tolerance
 from trunnion.model.tool.drill import point_height, wrong_drill
 from trunnion.model.tool.holder import Holder
 from trunnion.model.tool.lead import (
+    BORING_BAR,
+    FINISHING,
     REAMER,
     REAMER_EDGE,
     TAP,
     basic_minor_diameter,
+    wrong_boring_bar,
     wrong_reamer,
     wrong_tap,
 )
@@ -25,6 +28,7 @@ CHECKS: Mapping[str, Callable[[Tool], str]] = {
     **MILLS,
     "drill": wrong_drill,
     REAMER: wrong_reamer,
+    BORING_BAR: wrong_boring_bar,
     TAP: wrong_tap,
 }
 """What the numbers of each form lack, in words, or nothing."""
@@ -51,6 +55,8 @@ class Tool:
     - drill: a cone of `point_angle` (degrees, over both sides) and a cylinder of `diameter`.
     - reamer: a cylinder of `diameter` below which a `lead` (mm high) is chamfered at 45 degrees; `fit` is the tolerance class (ISO 286-1,
       "H7") of the holes that it makes.
+    - boring-bar: one edge that is set to `diameter`, in the catalogue the largest of its range, from `smallest` on (mm); taken for a
+      cylinder with a `lead` as a reamer is. Once set, `fit` is what it is set for.
     - tap: a thread of the nominal `diameter` and of `pitch` (mm), whose lowest threads are chamfered over the height `lead`. What it is
       taken to cut is the cylinder of its `core_diameter`: in a bore of that size it takes nothing off.
     - button: a round turning insert of `diameter` in a neutral holder, which the locked spindle holds while the table brings the work past:
@@ -82,6 +88,7 @@ class Tool:
     pitch: float = added(0.0, written=False)
     lead: float = added(0.0, written=False)
     fit: str = added("", written=False)
+    smallest: float = added(0.0, written=False)
 
     def __post_init__(self) -> None:
         if self.form not in FORMS:
@@ -94,10 +101,12 @@ class Tool:
             raise ValueError(
                 f"tool {self.name}: flute, neck, stickout and gauge length must grow in this order"
             )
-        if self.form not in (REAMER, TAP) and (self.pitch or self.lead or self.fit):
+        if self.form not in (*FINISHING, TAP) and (self.pitch or self.lead or self.fit):
             raise ValueError(
-                f"tool {self.name}: pitch, lead and fit are those of reamers and taps, not of the form {self.form}"
+                f"tool {self.name}: pitch, lead and fit are those of reamers, boring bars and taps, not of the form {self.form}"
             )
+        if self.smallest and self.form != BORING_BAR:
+            raise ValueError(f"tool {self.name}: only boring bars have a smallest diameter")
         wrong = CHECKS[self.form](self)
         if wrong:
             raise ValueError(f"tool {self.name}: {wrong}")
@@ -161,11 +170,11 @@ class Tool:
 
     @property
     def edge_angle(self) -> float:
-        """Angle in degrees between the cutting edges and the axis of a tool that cuts along it: half a drill's point angle, 45 on a
-        reamer's lead; 0 for other forms."""
+        """Angle in degrees between the cutting edges and the axis of a tool that cuts along it: half a drill's point angle, 45 on the lead
+        of a reamer or boring bar; 0 for other forms."""
         if self.form == "drill":
             return 0.5 * self.point_angle
-        return REAMER_EDGE if self.form == REAMER else 0.0
+        return REAMER_EDGE if self.form in FINISHING else 0.0
 
     @property
     def reach(self) -> float:
@@ -243,8 +252,13 @@ class Tool:
         return self.holder.name
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the tool as `NAME.tools.json` has it; pitch, lead and fit stand there where it has them."""
-        shape = {"pitch": self.pitch, "lead": self.lead, "fit": self.fit}
+        """Return the tool as `NAME.tools.json` has it; pitch, lead, fit and smallest diameter stand there where it has them."""
+        shape = {
+            "pitch": self.pitch,
+            "lead": self.lead,
+            "fit": self.fit,
+            "smallest": self.smallest,
+        }
         return {
             "number": self.number,
             "name": self.name,

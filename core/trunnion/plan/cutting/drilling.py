@@ -12,8 +12,8 @@ from trunnion.plan.cutting.power import NEWTON_METRES, drilling_power, drilling_
 from trunnion.shop.materials import feed_at
 from trunnion.units import MM_PER_METRE, trimmed
 
-AXIAL = ("spot", "drill", "countersink", "ream", "tap")
-"""Kinds of operation whose tool cuts along its axis: their data are those of drilling, reaming or tapping."""
+AXIAL = ("spot", "drill", "countersink", "ream", "fine_bore", "tap")
+"""Kinds of operation whose tool cuts along its axis: their data are those of drilling, reaming, boring or tapping."""
 SLOWER = {"countersink": 0.5}
 """Share of the speed of drilling that other kinds take: a countersink has its edge over a long cone, and chatters (usual shop practice)."""
 

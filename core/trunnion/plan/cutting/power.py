@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Material
-from trunnion.model.tool import REAMER, TAP, Tool
+from trunnion.model.tool import FINISHING, TAP, Tool
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 
 NEWTON_METRES = SECONDS_PER_MINUTE * WATTS_PER_KILOWATT / (2.0 * math.pi)
@@ -17,7 +17,7 @@ NEWTON_METRES = SECONDS_PER_MINUTE * WATTS_PER_KILOWATT / (2.0 * math.pi)
 DRILL = "drill"
 """The form of cutters that cut along their axis, with their whole diameter."""
 
-AXIAL_FORMS = (DRILL, REAMER, TAP)
+AXIAL_FORMS = (DRILL, *FINISHING, TAP)
 """Forms of cutters that cut along their axis."""
 
 THREAD_TORQUE = 8000.0
@@ -47,11 +47,11 @@ def cutting_power(
 def tool_power(
     material: Material, tool: Tool, feed_per_tooth: float, depth: float, width: float, feed: float
 ) -> float:
-    """Return the power at a tool in kW: of a drill by its whole diameter, of a reamer by the ring of its depth of cut (mm), of a tap by its
-    torque, of others by depth and width of cut."""
+    """Return the power at a tool in kW: of a drill by its whole diameter, of a reamer or boring bar by the ring of its depth of cut (mm),
+    of a tap by its torque, of others by depth and width of cut."""
     if tool.form == DRILL:
         return drilling_power(material, tool, feed_per_tooth, feed)
-    if tool.form == REAMER:
+    if tool.form in FINISHING:
         return reaming_power(material, tool, feed_per_tooth, depth, feed)
     if tool.form == TAP:
         return tapping_torque(material, tool) * (feed / tool.pitch) / NEWTON_METRES

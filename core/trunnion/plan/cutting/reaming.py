@@ -1,4 +1,5 @@
-"""Cutting data of reamers: speed, feed a revolution and depth of cut from the catalogue's tables, bounded by the machine."""
+"""Cutting data of reamers and boring bars: speed, feed a revolution and depth of cut from the catalogue's tables, bounded by the
+machine."""
 
 from __future__ import annotations
 
@@ -19,19 +20,20 @@ def reaming_data(
     table: DrillingTable,
     machine: Machine,
     settings: CuttingSettings,
+    word: str = "reaming",
 ) -> CuttingData:
-    """Return the data of an operation that reams a bore, with a sentence for each number.
+    """Return the data of an operation that reams or bores to size, with a sentence for each number; `word` says which.
 
     The depth of cut is half of the most that the table leaves on the diameter: a bore that is wider is a lighter cut.
     """
     speed = table.speed * settings.speed_share
-    rules = [f"vc {trimmed(speed, 0)} m/min: reaming {table.title.lower()} ({table.name})"]
+    rules = [f"vc {trimmed(speed, 0)} m/min: {word} {table.title.lower()} ({table.name})"]
     speed, spindle, bound = within_spindle(speed, tool, machine, settings)
     rules += bound
     rows = [(d, low + table.feed_share * (high - low)) for d, low, high in table.feeds]
     turn = feed_at(rows, tool.diameter) * settings.feed_share
     rules.append(
-        f"f {trimmed(turn, 3)} mm a revolution: the reaming table at D {trimmed(tool.diameter, 2)}"
+        f"f {trimmed(turn, 3)} mm a revolution: the {word} table at D {trimmed(tool.diameter, 2)}"
     )
     least, most = table.allowance(tool.diameter)
     depth = 0.5 * most

@@ -32,18 +32,19 @@ from trunnion.shop import Stage
 
 NOT_REACHED = "hole.not-reached"
 """Code of the finding on a hole that the setup's tool axis does not reach."""
-SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, COUNTERSINK, TAP = (
+SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, FINE_BORE, COUNTERSINK, TAP = (
     "spot",
     "drill",
     "hole_mill",
     "hole_floor",
     "counterbore",
     "ream",
+    "fine_bore",
     "countersink",
     "tap",
 )
 """Kinds of operations on holes."""
-KINDS = (SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, COUNTERSINK, TAP)
+KINDS = (SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, FINE_BORE, COUNTERSINK, TAP)
 OVERLAP = 0.5
 """mm that a floor's cutter begins above what the drill's point has left."""
 
@@ -152,7 +153,7 @@ def no_tool(
     """Return the finding that no tool of the catalogue fits what a stage cuts of some holes: an error, but a warning for what is done to a
     bore that is made: its flat floor, over which the drill leaves its point, its fit, its thread."""
     names = ", ".join(f.id for f in features)
-    return (warning if stage.kind in (FLOOR, REAM, TAP) else error)(
+    return (warning if stage.kind in (FLOOR, REAM, FINE_BORE, TAP) else error)(
         "route.no-cutter",
         f"{names}: {missing.reason} ({stage.name})",
         *(f.id for f in features),
@@ -177,7 +178,7 @@ def _parts(operation: Operation, shape: HoleShape, process: ProcessTree) -> tupl
         raise Refused(
             f"{shape.bore.feature}: no thread is demanded in it; name its thread, or delete the operation"
         )
-    if operation.kind in (REAM, TAP):
+    if operation.kind in (REAM, FINE_BORE, TAP):
         return (shape.narrow,)
     if operation.kind == FLOOR:
         drilled = _drilled_by(operation, shape.bore.feature, process)

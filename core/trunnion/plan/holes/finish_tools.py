@@ -1,8 +1,8 @@
-"""Which reamers and taps fit bores that a fit or a thread is demanded of, and how wide such a bore is before them."""
+"""Which reamers, boring bars and taps fit bores that a fit or a thread is demanded of, and how wide such a bore is before them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from trunnion import tolerance
@@ -10,11 +10,17 @@ from trunnion.model.feature import Feature
 from trunnion.model.material import Material
 from trunnion.model.tool import Tool
 from trunnion.plan.holes.demand import fits_within, needs_reaming
-from trunnion.plan.holes.drive import REAM, TAP
+from trunnion.plan.holes.drive import FINE_BORE, REAM, TAP
 from trunnion.plan.holes.hole import HoleShape, HoleThread, PlannedHole
-from trunnion.plan.holes.settings import HoleSettings, ReamSettings, TapSettings
-from trunnion.plan.holes.tools import HoleSpace
+from trunnion.plan.holes.settings import (
+    FineBoringSettings,
+    HoleSettings,
+    ReamSettings,
+    TapSettings,
+)
+from trunnion.plan.holes.tools import HoleSpace, either
 from trunnion.plan.tool_choice import Candidates
+from trunnion.settings import Value, choose
 from trunnion.shop import Shop
 from trunnion.units import trimmed
 
@@ -24,8 +30,8 @@ THROUGH_TAPS, BLIND_TAPS = "tap_through", "tap_blind"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoreFinish:
-    """What comes after a bore: reaming or tapping (`kind`), with the tools for it; `before` is the bore as drills and end mills make it,
-    and a drill's diameter may differ from it by `spare` mm."""
+    """What comes after a bore: reaming, boring or tapping (`kind`), with the tools for it; `before` is the bore as drills and end mills
+    make it, and a drill's diameter may differ from it by `spare` mm."""
 
     kind: str
     found: Candidates
@@ -33,13 +39,30 @@ class BoreFinish:
     spare: float = 0.0
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FinishSettings:
+    """What a shop may choose of what comes after a bore."""
+
+    reaming: ReamSettings
+    boring: FineBoringSettings
+    tapping: TapSettings
+
+    @staticmethod
+    def of(choices: Mapping[str, Value]) -> FinishSettings:
+        """Return them by a session's settings (full keys)."""
+        return FinishSettings(
+            reaming=choose(ReamSettings, choices),
+            boring=choose(FineBoringSettings, choices),
+            tapping=choose(TapSettings, choices),
+        )
+
+
 def bore_finish(
     feature: Feature,
     shape: HoleShape,
     tools_of: Callable[[str], Sequence[Tool]],
     around: HoleSpace,
-    reaming: ReamSettings,
-    tapping: TapSettings,
+    settings: FinishSettings,
     material: Material,
     shop: Shop,
 ) -> BoreFinish | None:
@@ -50,20 +73,23 @@ def bore_finish(
     bore, thread = shape.bore, shape.thread
     if thread is not None:
         taps = tools_of(THROUGH_TAPS if bore.through else BLIND_TAPS)
-        found = taps_for(shape.narrow, thread, taps, around, tapping)
+        found = taps_for(shape.narrow, thread, taps, around, settings.tapping)
         return BoreFinish(kind=TAP, found=found, before=bore)
     if not needs_reaming(feature, shop):
         return None
     reamers = tools_of("ream")
     fits = fits_within(feature, sorted({t.fit for t in reamers if t.fit}), shop)
-    found = reamers_for(
-        shape.narrow, str(feature.attributes["fit"]), fits, reamers, around, reaming
-    )
+    fit = str(feature.attributes["fit"])
+    kind, table = REAM, shop.reaming_for(material)
+    found = reamers_for(shape.narrow, fit, fits, reamers, around, settings.reaming)
     if not found.tools:
-        return BoreFinish(kind=REAM, found=found, before=bore)
-    least, most = shop.reaming_for(material).allowance(bore.diameter)
+        bars = bars_for(shape.narrow, fit, tools_of("bore"), around, settings.boring)
+        if not bars.tools:
+            return BoreFinish(kind=REAM, found=either(found, bars), before=bore)
+        kind, found, table = FINE_BORE, bars, shop.boring_for(material)
+    least, most = table.allowance(bore.diameter)
     narrower = replace(bore, diameter=bore.diameter - least)
-    return BoreFinish(kind=REAM, found=found, before=narrower, spare=most - least)
+    return BoreFinish(kind=kind, found=found, before=narrower, spare=most - least)
 
 
 def drill_tolerance(finish: BoreFinish | None, settings: HoleSettings) -> float:
@@ -71,10 +97,11 @@ def drill_tolerance(finish: BoreFinish | None, settings: HoleSettings) -> float:
     return max(settings.diameter_tolerance, 0.0 if finish is None else finish.spare)
 
 
-def ream_tip(hole: PlannedHole, tool: Tool, settings: ReamSettings) -> float:
-    """Return how deep a reamer's tip goes: past the end of a through hole with its lead, else to where the full diameter ends."""
+def finish_tip(hole: PlannedHole, tool: Tool, breakthrough: float) -> float:
+    """Return how deep the tip of a reamer or a boring bar goes: past the end of a through hole with its lead, else to where the bore's full
+    diameter ends."""
     if hole.through:
-        return hole.bottom - tool.lead - settings.breakthrough
+        return hole.bottom - tool.lead - breakthrough
     return hole.bottom
 
 
@@ -172,7 +199,7 @@ def reamers_for(
             reason=f"the catalogue has no reamer of {size}",
             remedy=f"add a reamer of {size} to the tools folder",
         )
-    tips = {t.name: ream_tip(hole, t, settings) for t in same}
+    tips = {t.name: finish_tip(hole, t, settings.breakthrough) for t in same}
     free = [t for t in same if around.has_space(hole, t, tips[t.name])]
     if not free:
         return Candidates(
@@ -182,3 +209,41 @@ def reamers_for(
             hindered=True,
         )
     return Candidates(tools=tuple(sorted(free, key=lambda t: (t.stickout, t.name))))
+
+
+def bars_for(
+    hole: PlannedHole,
+    fit: str,
+    tools: Sequence[Tool],
+    around: HoleSpace,
+    settings: FineBoringSettings,
+) -> Candidates:
+    """Return the boring bars set to a bore's diameter, the shortest first; each test that leaves none says what would be needed."""
+    size = f"D {trimmed(hole.diameter, 3)}"
+    same = [
+        set_to(t, hole.diameter, fit)
+        for t in tools
+        if t.smallest - tolerance.COINCIDENT <= hole.diameter <= t.diameter + tolerance.COINCIDENT
+    ]
+    if not same:
+        return Candidates(
+            tools=(),
+            reason=f"no boring bar of the catalogue is set to {size}",
+            remedy=f"add a boring bar for {size} to the tools folder",
+        )
+    free = [
+        t for t in same if around.has_space(hole, t, finish_tip(hole, t, settings.breakthrough))
+    ]
+    if not free:
+        return Candidates(
+            tools=(),
+            reason=f"head or holder of every boring bar for {size} would come too near to what stands around it",
+            remedy=f"add a longer boring bar for {size} to the tools folder",
+            hindered=True,
+        )
+    return Candidates(tools=tuple(sorted(free, key=lambda t: (t.stickout, t.name))))
+
+
+def set_to(tool: Tool, diameter: float, fit: str) -> Tool:
+    """Return a boring bar that is set to a bore's diameter, for a fit."""
+    return replace(tool, name=f"{tool.name} at D{trimmed(diameter, 3)}", diameter=diameter, fit=fit)

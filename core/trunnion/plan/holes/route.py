@@ -22,6 +22,7 @@ from trunnion.plan.holes.drive import (
     COUNTERBORE,
     COUNTERSINK,
     DRILL,
+    FINE_BORE,
     FLOOR,
     REAM,
     SPOT,
@@ -29,7 +30,12 @@ from trunnion.plan.holes.drive import (
     no_tool,
     not_reached,
 )
-from trunnion.plan.holes.finish_tools import BoreFinish, bore_finish, drill_tolerance
+from trunnion.plan.holes.finish_tools import (
+    BoreFinish,
+    FinishSettings,
+    bore_finish,
+    drill_tolerance,
+)
 from trunnion.plan.holes.hole import (
     HoleShape,
     PlannedHole,
@@ -42,8 +48,6 @@ from trunnion.plan.holes.settings import (
     MILL_ALLOWANCE,
     DrillSettings,
     HoleSettings,
-    ReamSettings,
-    TapSettings,
 )
 from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
 from trunnion.plan.prismatic.regions import SetupSpace
@@ -102,8 +106,7 @@ def reached_holes(state: SetupPlanState, holes: Sequence[Feature]) -> tuple[Setu
         groups=SkinGroups.of(state.context.skin(tolerance.CHORD, state.progress)),
         settings=choose(HoleSettings, state.choices),
         drilling=choose(DrillSettings, state.choices),
-        reaming=choose(ReamSettings, state.choices),
-        tapping=choose(TapSettings, state.choices),
+        finishing=FinishSettings.of(state.choices),
     )
     other = state.turned_over()
     for feature in state.progress.each(holes):
@@ -127,8 +130,7 @@ class _Planning:
     groups: SkinGroups
     settings: HoleSettings
     drilling: DrillSettings
-    reaming: ReamSettings
-    tapping: TapSettings
+    finishing: FinishSettings
     spaces: dict[tuple[str, Direction], HoleSpace] = field(default_factory=dict)
 
     def reached(self, state: SetupPlanState, feature: Feature) -> SetupHole:
@@ -143,8 +145,7 @@ class _Planning:
             shape,
             state.cutters,
             around,
-            self.reaming,
-            self.tapping,
+            self.finishing,
             state.material,
             state.shop,
         )
@@ -321,7 +322,7 @@ def _sunk(hole: SetupHole) -> Made:
 
 
 def _finished(kind: str) -> Callable[[SetupHole], Made]:
-    """Return the rule of reaming or tapping: the bore whose demand asks for it."""
+    """Return the rule of reaming, boring or tapping: the bore whose demand asks for it."""
 
     def rule(hole: SetupHole) -> Made:
         if hole.finish is None or hole.finish.kind != kind:
@@ -340,6 +341,7 @@ RULES: dict[str, Callable[[SetupHole], Made]] = {
     COUNTERBORE: _counterbored,
     COUNTERSINK: _sunk,
     REAM: _finished(REAM),
+    FINE_BORE: _finished(FINE_BORE),
     TAP: _finished(TAP),
 }
 """What a stage of a kind cuts of a hole, with the tools for it."""

@@ -77,6 +77,36 @@ class ReamSettings:
     )
 
 
+@settings("hole.fine_bore")
+class FineBoringSettings:
+    """How holes are bored to size. Speed and feed come with the cutting data."""
+
+    breakthrough: float = setting(
+        0.5,
+        unit="mm",
+        low=0.0,
+        high=20.0,
+        label="Breakthrough",
+        help="How far the edge goes on past the end of a through hole.",
+    )
+    dwell: float = setting(
+        0.0,
+        unit="s",
+        low=0.0,
+        high=10.0,
+        label="Dwell",
+        help="How long the edge waits at the end of the bore before it is fed out.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there: the retract plane of cycles.",
+    )
+
+
 @settings("hole.tap")
 class TapSettings:
     """How threads are tapped. The speed comes with the cutting data; the feed is the pitch a revolution."""
@@ -158,5 +188,11 @@ class HoleSettings:
     )
 
 
-HOLE_SETTINGS: tuple[type, ...] = (HoleSettings, DrillSettings, ReamSettings, TapSettings)
+HOLE_SETTINGS: tuple[type, ...] = (
+    HoleSettings,
+    DrillSettings,
+    ReamSettings,
+    FineBoringSettings,
+    TapSettings,
+)
 """Groups of settings that planning of holes reads."""

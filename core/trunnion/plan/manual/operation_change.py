@@ -11,7 +11,7 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.spindle import surface_speed
-from trunnion.model.tool import REAMER, TAP, Tool
+from trunnion.model.tool import FINISHING, TAP, Tool
 from trunnion.plan.cutting.drilling import AXIAL
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.cutting.optimize import recomputed
@@ -224,7 +224,7 @@ def _without(rules: tuple[str, ...], *beginnings: str) -> tuple[str, ...]:
 def _with_load(operation: Operation, material: Material) -> Operation:
     """Return an operation whose power and torque are those of its speed and feed."""
     data, tool = operation.data, operation.cutter
-    if operation.kind in AXIAL and tool.form not in (REAMER, TAP):
+    if operation.kind in AXIAL and tool.form not in (*FINISHING, TAP):
         power = drilling_power(material, tool, data.feed_per_tooth, data.feed)
     else:
         power = tool_power(material, tool, data.feed_per_tooth, data.depth, data.width, data.feed)

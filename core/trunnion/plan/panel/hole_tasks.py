@@ -9,8 +9,13 @@ from trunnion.findings import Refused
 from trunnion.geometry.plane.region import EMPTY_REGION
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
-from trunnion.plan.holes.drive import REAM, TAP, no_tool, not_reached
-from trunnion.plan.holes.finish_tools import BoreFinish, bore_finish, drill_tolerance
+from trunnion.plan.holes.drive import FINE_BORE, REAM, TAP, no_tool, not_reached
+from trunnion.plan.holes.finish_tools import (
+    BoreFinish,
+    FinishSettings,
+    bore_finish,
+    drill_tolerance,
+)
 from trunnion.plan.holes.hole import (
     HoleShape,
     PlannedHole,
@@ -22,8 +27,6 @@ from trunnion.plan.holes.settings import (
     MILL_ALLOWANCE,
     DrillSettings,
     HoleSettings,
-    ReamSettings,
-    TapSettings,
 )
 from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
@@ -96,8 +99,7 @@ def hole_reach(state: PanelPlanState, feature: Feature, half: bool = False) -> H
             shape,
             lambda use: state.shop.tools_for(state.material.iso_group, use),
             known.around,
-            choose(ReamSettings, state.choices),
-            choose(TapSettings, state.choices),
+            FinishSettings.of(state.choices),
             state.material,
             state.shop,
         )
@@ -259,7 +261,7 @@ def _milled(
 def _bored_faces(known: HolePlanning, feature: Feature) -> tuple[int, ...] | None:
     """Return the faces that making a bore finishes, None: all of its own; of one that is reamed after it not its side."""
     finish = known.finishes.get(feature.id)
-    if finish is None or finish.kind != REAM or not finish.found.tools:
+    if finish is None or finish.kind == TAP or not finish.found.tools:
         return None
     return feature.with_role("bottom")
 
@@ -267,7 +269,7 @@ def _bored_faces(known: HolePlanning, feature: Feature) -> tuple[int, ...] | Non
 def _finish_tasks(
     state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
-    """Ask for the reaming or tapping of bores that a stage is for."""
+    """Ask for the reaming, boring or tapping of bores that a stage is for."""
     known = _planning(state, stage, features)
     fitted = [
         HoleFit(
@@ -451,6 +453,7 @@ HOLE_TASK_MAKERS: Mapping[
     "counterbore": _counterbore_tasks,
     "countersink": _countersink_tasks,
     REAM: _finish_tasks,
+    FINE_BORE: _finish_tasks,
     TAP: _finish_tasks,
 }
 """The rule behind each word that a typical plan gives for the tool of a stage on holes."""

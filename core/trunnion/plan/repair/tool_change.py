@@ -12,12 +12,12 @@ from trunnion import tolerance
 from trunnion.findings import Fix
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.model.tool import BUTTON, REAMER, TAP, Tool
+from trunnion.model.tool import BUTTON, FINISHING, TAP, Tool
 from trunnion.plan.freeform.keys import EARLIER
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.tool_choice import depth_reached
 
-SHAPES = ("drill", REAMER, TAP, "form", BUTTON)
+SHAPES = ("drill", *FINISHING, TAP, "form", BUTTON)
 """Forms that leave their own shape in the part, whatever they cut."""
 MARGIN = 0.5
 """mm that a tool has to reach farther than what was measured."""

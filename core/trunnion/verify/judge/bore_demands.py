@@ -1,8 +1,9 @@
-"""Threads and fits: what the motions of taps and reamers make of the bores that have one.
+"""Threads and fits: what the motions of taps, reamers and boring bars make of the bores that have one.
 
 A tap is taken to cut no more than its core (`Tool.core_diameter`), so neither contact nor stock see its threads. They are judged here, by
 the strokes themselves: each goes down a bore that has this thread and that was bored to its core before, at the pitch a revolution; full
-threads end above the tap's lead. A reamer's bore has its fit as far as its full diameter has come.
+threads end above the tap's lead. A bore has its fit as far as the full diameter of a reamer of a class within it has come, or of a boring
+bar that is set for it.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from trunnion.geometry.arrays import Floats
 from trunnion.model.hole_demand import BoreDemand
 from trunnion.model.motion.program import STOPPED, ProgramSection
 from trunnion.model.spindle import per_minute
-from trunnion.model.tool import Tool
+from trunnion.model.tool import BORING_BAR, FINISHING, Tool
 from trunnion.units import trimmed
 from trunnion.verify.judge.locations import block_of, position_text
 from trunnion.verify.judge.setups import SetupProof
@@ -77,12 +78,12 @@ def demand_findings(
 
 
 def _strokes(proof: SetupProof) -> Iterator[ToolStroke]:
-    """Yield the feeds of taps and reamers into what is below them."""
+    """Yield the feeds of taps, reamers and boring bars into what is below them."""
     frame, moves = proof.program.setup.frame, proof.moves
     down = np.einsum("ij,ij->i", moves.end - moves.start, moves.end_axis) < -tolerance.COINCIDENT
     for k, section in enumerate(proof.program.sections):
         tool = section.tool
-        if not isinstance(tool, Tool) or tool.form not in ("tap", "reamer"):
+        if not isinstance(tool, Tool) or tool.form not in ("tap", *FINISHING):
             continue
         for row in np.flatnonzero((moves.section == k) & ~moves.rapid & down):
             yield ToolStroke(
@@ -101,7 +102,8 @@ def _makes(tool: Tool, bore: BoreDemand) -> bool:
     if bore.is_thread:
         return tool.form == "tap" and _same_thread(tool, bore)
     same = abs(tool.diameter - bore.diameter) <= tolerance.SEW
-    return tool.form == "reamer" and same and tool.fit in bore.fits
+    made = tool.form in FINISHING and same
+    return made and (tool.fit in bore.fits or (tool.form == BORING_BAR and tool.fit == bore.words))
 
 
 def _same_thread(tool: Tool, bore: BoreDemand) -> bool:
@@ -197,6 +199,6 @@ def _wanted(bore: BoreDemand, proofs: Sequence[SetupProof]) -> float:
         s.tool.lead
         for p in proofs
         for s in p.program.sections
-        if isinstance(s.tool, Tool) and s.tool.form == "reamer" and _makes(s.tool, bore)
+        if isinstance(s.tool, Tool) and s.tool.form in FINISHING and _makes(s.tool, bore)
     ]
     return bore.depth - min(leads, default=0.0)

@@ -149,7 +149,7 @@ def drill_shares(sections: Sequence[ProgramSection]) -> Floats:
 def _axial_share(tool: Tool) -> float:
     if tool.form == "drill":
         return math.sin(math.radians(0.5 * tool.point_angle))
-    return math.sqrt(0.5) if tool.form == "reamer" else 0.0
+    return math.sqrt(0.5) if tool.form in ("reamer", "boring-bar") else 0.0
 
 
 def least_angle(area: Floats, radius: Floats, flute: Floats) -> Floats:

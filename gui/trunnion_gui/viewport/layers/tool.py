@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from trunnion.model.tool import Tool
+from trunnion.model.tool import FINISHING, Tool
 from trunnion_gui.look.colours import Theme, rgb, tool_colours
 
 PARTS = ("cutter", "shank", "holder")
@@ -114,7 +114,7 @@ def cutter_outline(tool: Tool) -> Outline:
         ]
     if tool.form == "drill":
         return [(0.0, 0.0), (r, tool.point_length), (r, top)]
-    if tool.form == "reamer":
+    if tool.form in FINISHING:
         return [(0.0, 0.0), (r - tool.lead, 0.0), (r, tool.lead), (r, top)]
     if tool.form == "tap":
         return [(0.0, 0.0), (tool.core_radius, 0.0), (tool.core_radius, top)]

@@ -1,4 +1,4 @@
-"""Reamers and taps in their cycles: how deep, at which feed, and what they refuse to cut."""
+"""Reamers, boring bars and taps in their cycles: how deep, at which feed, and what they refuse to cut."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ from pytest import approx
 from milling import SETUP, box_blank, cutting
 from trunnion.model.motion.cycle import CycleKind
 from trunnion.plan.holes.drive import HoleDrive
+from trunnion.plan.holes.finish_tools import set_to
 from trunnion.plan.holes.hole import HoleThread, PlannedHole
-from trunnion.plan.holes.settings import ReamSettings, TapSettings
+from trunnion.plan.holes.settings import FineBoringSettings, ReamSettings, TapSettings
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.shop import load_shop
+from trunnion.toolpath.hole.fine_bore import fine_bore
 from trunnion.toolpath.hole.ream import ream
 from trunnion.toolpath.hole.tap import tap
 from trunnion.toolpath.stock.heightfield import PlanningStock
@@ -65,11 +67,30 @@ def test_the_end_of_a_blind_bore_that_the_lead_leaves_is_told():
     planned = reamed("RE-H7 D10", bore(0, 10.0, through=False))
     assert planned.path.position[:, 2].min() == approx(-20.0)
     (told,) = planned.findings
-    assert told.code == "hole.reamed-depth" and "19.2 of its 20 mm" in told.text
+    assert told.code == "hole.finished-depth" and "19.2 of its 20 mm" in told.text
 
 
 def test_a_reamer_of_another_size_cuts_nothing():
     planned = reamed("RE-H7 D9", bore(0, 10.0))
+    assert not len(planned.path) and planned.findings[0].code == "hole.other-size"
+
+
+def bored(diameter, *holes, **choices):
+    settings = choose(FineBoringSettings, {f"hole.fine_bore.{k}": v for k, v in choices.items()})
+    bar = set_to(TOOLS["FB D20-26"], diameter, "H6")
+    drive = HoleDrive(kind="fine_bore", holes=holes)
+    return fine_bore(drive, bar, cutting(10.0, 0.2), stock(), SETUP, settings, NO_PROGRESS)
+
+
+def test_a_boring_bar_goes_in_and_out_at_the_feed_and_may_wait_between():
+    path = bored(22.0, bore(0, 22.0), bore(1, 22.0), dwell=0.3).path
+    assert [b.cycle.kind for b in path.cycles] == [CycleKind.BORE] * 2
+    assert path.dwells().sum() == approx(0.6)
+    assert path.position[:, 2].min() == approx(-20.0 - 0.2 - 0.5)
+
+
+def test_a_boring_bar_that_is_set_to_another_diameter_cuts_nothing():
+    planned = bored(22.1, bore(0, 22.0))
     assert not len(planned.path) and planned.findings[0].code == "hole.other-size"
 
 
