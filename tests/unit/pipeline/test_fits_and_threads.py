@@ -228,6 +228,14 @@ def test_what_the_file_demands_is_taken_up_and_a_person_goes_before_it():
     assert "fit" not in again.feature("hole-05").attributes
 
 
+def test_limits_in_the_file_are_taken_about_the_diameter_that_is_drawn():
+    engine, session = demanded()
+    given = (dimension(session, "hole-05", value=7.99, upper=0.03, lower=0.0),)
+    found = with_demands(session.recognition, None, given, engine.context.shop)
+    sizes = found.feature("hole-05").sizes
+    assert (sizes["fit_lower"], sizes["fit_upper"]) == approx((-0.01, 0.02))
+
+
 def test_what_the_file_says_of_another_size_is_told_and_not_taken_up():
     engine, session = demanded()
     given = (dimension(session, "hole-05", value=8.5, fit="H7", text="size 8.5"),)

@@ -113,19 +113,24 @@ def _is_same(before: Feature, feature: Feature) -> bool:
 
 
 def _demand_in(dimension: Dimension, feature: Feature) -> HoleDemand:
-    """Return what a file's dimension demands of a hole; raise `BadInput` where its diameter is another one."""
+    """Return what a file's dimension demands of a hole; raise `BadInput` where the hole is drawn with another diameter.
+
+    Limits are taken about the diameter that is drawn, which lies between them: files give them from a size that may be another one.
+    """
     diameter = hole_size(feature, "diameter")
     if dimension.thread:
         return thread_demand(dimension.thread)
-    if abs(dimension.value - diameter) > tolerance.SEW:
+    if dimension.fit or dimension.upper is None or dimension.lower is None:
+        low = high = dimension.value
+    else:
+        low, high = dimension.value + dimension.lower, dimension.value + dimension.upper
+    if not low - tolerance.SEW <= diameter <= high + tolerance.SEW:
         raise BadInput(
             f"{feature.id} is drawn with {trimmed(diameter, 3)} mm, not with {trimmed(dimension.value, 3)}"
         )
-    if dimension.fit:
+    if dimension.fit or low == high:
         return fit_demand(dimension.fit)
-    if dimension.upper is None or dimension.lower is None:
-        return fit_demand("")
-    return fit_demand(f"{_signed(dimension.upper)}/{_signed(dimension.lower)}")
+    return fit_demand(f"{_signed(high - diameter)}/{_signed(low - diameter)}")
 
 
 def _signed(deviation: float) -> str:
