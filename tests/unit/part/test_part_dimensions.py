@@ -181,7 +181,7 @@ def test_a_dimension_of_what_has_no_diameter_is_said(file: Path, tmp_path: Path)
         folder.mkdir()
         part = changed(file, folder, USAGE, rf"\1#{number}")
         assert [d.value for d in part.dimensions] == [12.0, 6.0]
-        assert "is of no face of the shape" in part.findings[0].text
+        assert "is of no cylinder of the shape" in part.findings[0].text
 
 
 def test_a_part_twice_in_an_assembly_has_its_sizes_twice(tmp_path: Path) -> None:
@@ -191,6 +191,67 @@ def test_a_part_twice_in_an_assembly_has_its_sizes_twice(tmp_path: Path) -> None
         part = samples.read_path(path, solid=solid)
         (found,) = part.dimensions
         assert (part.n_solids, part.graph().radius[found.faces[0] - 1]) == (2, pytest.approx(5.0))
+
+
+THREAD = """
+#900001=CONSTRUCTIVE_GEOMETRY_REPRESENTATION('supplemental geometry',(#900002),#{context});
+#900002=GEOMETRIC_CURVE_SET('Thread Cylinder.1',(#900003,#900004));
+#900003=TRIMMED_CURVE('',#900005,(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(4.7)),.T.,.PARAMETER.);
+#900004=TRIMMED_CURVE('',#900006,(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(8.)),.T.,.PARAMETER.);
+#900005=CIRCLE('',#900007,{radius});
+#900006=LINE('',#900008,#900009);
+#900007=AXIS2_PLACEMENT_3D('',#900010,#900011,#900012);
+#900008=CARTESIAN_POINT('',({x}+{radius},15.,{z}));
+#900009=VECTOR('',#900011,1.);
+#900010=CARTESIAN_POINT('',({x},15.,{z}));
+#900011=DIRECTION('',(0.,0.,1.));
+#900012=DIRECTION('',(1.,0.,0.));
+ENDSEC;
+END-ISO-10303-21;
+"""
+"""A thread about an axis at {x} mm, 8 mm long from the height {z} on."""
+
+
+def threaded(
+    tmp_path: Path, name: str = "M6x1", radius: float = 3.0, x: float = 15.0, z: float = 2.0
+) -> Part:
+    """Return a plate with holes of 5 mm and a size of 6 mm that is tied to curves of a thread."""
+    sizes = [Sized(holes=(0,), value=6.0)]
+    text = write_dimensioned(tmp_path / "thread.step", [5.0, 5.0], sizes).read_text()
+    context = re.search(r"ADVANCED_BREP_SHAPE_REPRESENTATION\([^;]*,#(\d+)\);", text)[1]
+    curves = THREAD.replace("{x}+{radius}", f"{x + radius!r}")
+    curves = curves.format(context=context, radius=repr(radius), x=repr(x), z=repr(z))
+    text = re.sub(r"ENDSEC;\s*END-ISO-10303-21;\s*$", curves.lstrip(), text)
+    text = re.sub(
+        r"(GEOMETRIC_ITEM_SPECIFIC_USAGE\('','',#\d+),#\d+,#\d+", r"\1,#900001,#900002", text
+    )
+    text = text.replace("SHAPE_ASPECT('',''", f"SHAPE_ASPECT('{name}',''")
+    (path := tmp_path / "tied.step").write_text(text)
+    return samples.read_path(path)
+
+
+def test_a_thread_that_curves_draw_about_a_hole_is_the_holes(tmp_path: Path) -> None:
+    part = threaded(tmp_path)
+    (found,) = part.dimensions
+    assert (found.value, found.thread) == (6.0, "M6x1") and part.findings == ()
+    assert [bores(part)[t] for t in found.faces] == [15.0]
+    assert part.graph().radius[found.faces[0] - 1] == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"name": "6 mm"},
+        {"radius": 2.0},
+        {"x": 15.5},
+        {"z": 12.0},
+    ],
+    ids=["no thread named", "narrower than the hole", "another axis", "above the hole"],
+)
+def test_curves_that_are_no_thread_of_a_hole_are_tied_to_none(tmp_path: Path, other) -> None:
+    part = threaded(tmp_path, **other)
+    assert part.dimensions == ()
+    assert "is of no cylinder of the shape and no thread about one" in part.findings[0].text
 
 
 def test_only_sizes_of_the_chosen_solid_are_its_own(tmp_path: Path) -> None:

@@ -217,7 +217,7 @@ def test_sizes_that_are_no_diameter_are_none_of_ours(name: str) -> None:
         (HOLE + SIZE + measure(25, 1.0).replace("1.0", "1.E999"), "#25 has no value"),
         (HOLE + SIZE + measure(25, 1.0).replace("1.0", "'x'"), "#25 has no value"),
         (HOLE + SIZE + measure(25, 12.0, unit=77), "#77 is not in the file"),
-        (HOLE + SIZE + measure(25, 12.0, unit=6), "#25 is in no unit of length (#6)"),
+        (HOLE + SIZE + measure(25, 12.0, unit=6), "#6 is no unit of length"),
         (HOLE + SIZE + "#25=MEASURE_REPRESENTATION_ITEM('',&);", "#25 can't be understood"),
         (HOLE.replace("#20,'d", "#88,'d") + SIZE + measure(25, 12.0), "it names no face"),
         (
@@ -255,7 +255,7 @@ def test_a_unit_defined_by_itself_is_no_endless_loop() -> None:
     circle = "#7=(CONVERSION_BASED_UNIT('X',#8) LENGTH_UNIT() NAMED_UNIT(*));"
     circle += "#8=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(2.),#7);"
     found, (said,) = read(HOLE, SIZE, measure(25, 12.0, unit=7), circle)
-    assert found == [] and "#25 has no unit" in said
+    assert found == [] and "has no unit" in said
 
 
 NOTE = SIZE.replace("(#25)", "(#25,#26)")
@@ -294,6 +294,15 @@ def test_what_the_annotation_shows_is_the_name_where_the_aspect_has_none() -> No
     assert only(
         HOLE.replace("bore A", ""), SIZE, measure(25, 12.0), SHOWN, shown
     ).dimension.text == ("Ø12")
+
+
+def test_what_a_dimension_shows_is_its_name_and_tolerances_shown_beside_are_not() -> None:
+    shown = (
+        r"#66=DESCRIPTIVE_REPRESENTATION_ITEM('equivalent unicode string',"
+        r"'DIM\\w4X M12x1.75-6H\\n+0.1\\xFCF\\w\X2\2316\X0\0.05\\wA');"
+    )
+    own = only(HOLE, SIZE, measure(25, 12.0), SHOWN, shown).dimension
+    assert (own.text, own.thread) == ("4X M12x1.75-6H +0.1", "M12x1.75-6H")
 
 
 def test_the_name_is_one_line() -> None:

@@ -1,17 +1,19 @@
 """The dimensions of a STEP file on the faces of the part: from the numbers of entities in the text to tags.
 
 The kernel numbers entities in the order of the text, so a face is found by its position there; whether the kernel took as many entities as
-the text has, and what it made of each, is checked. Edges are circles at the ends of cylinders: a diameter on one is the cylinder's.
+the text has, and what it made of each, is checked. Edges are circles at the ends of cylinders: a diameter on one is the cylinder's. The
+size of a thread is often tied to curves that draw its cylinder: it is that of the hole's faces within.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Cylinder
 from OCP.STEPConstruct import STEPConstruct
@@ -23,6 +25,7 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 from trunnion import tolerance
 from trunnion.findings import Finding, remark
 from trunnion.geometry.dimension import Dimension
+from trunnion.part.read.step_curves import DrawnThread, cylinders_in
 from trunnion.part.read.step_dimensions import MARK, FileDimensions, dimensions_in
 from trunnion.part.topology.identity import Shape, edges_of, faces_of
 
@@ -48,13 +51,10 @@ class ReadDimensions:
         """Return the finding on what can't be used; none where all can."""
         if not self.problems:
             return []
-        listed, more = (
-            "; ".join(self.problems[:_MOST_PROBLEMS]),
-            len(self.problems) - _MOST_PROBLEMS,
-        )
-        text = f"dimensions in the file that can't be used: {listed}" + (
-            f"; and {more} more" if more > 0 else ""
-        )
+        listed = "; ".join(self.problems[:_MOST_PROBLEMS])
+        more = len(self.problems) - _MOST_PROBLEMS
+        rest = f"; and {more} more" if more > 0 else ""
+        text = f"dimensions in the file that can't be used: {listed}{rest}"
         return [
             remark(
                 "part.dimensions",
@@ -80,7 +80,8 @@ def read_dimensions(reader: Any, file: Path, shape: Shape) -> ReadDimensions:
     """Return the dimensions that a STEP file gives of the faces of a shape; `reader` is the kernel's, after its transfer."""
     if not has_dimensions(file):
         return ReadDimensions()
-    given = dimensions_in(file.read_bytes())
+    data = file.read_bytes()
+    given = dimensions_in(data)
     model = reader.StepModel()
     if given.dimensions and model.NbEntities() != given.count:
         problem = f"the CAD kernel takes {model.NbEntities()} entities of {given.count}, so no size can be tied to its faces"
@@ -94,25 +95,31 @@ def read_dimensions(reader: Any, file: Path, shape: Shape) -> ReadDimensions:
         made = STEPConstruct.FindShape_s(process, entity)
         return None if made.IsNull() else made
 
-    tags = _tags(given, made_of, shape)
+    faces = _ShapeTags(shape)
+    tags = _tags(given, made_of, faces) | _drawn_tags(given, data, faces)
     found, problems = [], list(given.problems)
     for dimension in given.dimensions:
-        faces = sorted({tag for item in dimension.items for tag in tags.get(item, ())})
-        strange = [f"#{item}" for item in dimension.items if item not in given.positions]
-        if strange and faces:
+        own = sorted({tag for item in dimension.items for tag in tags.get(item, ())})
+        strange = [
+            f"#{item}"
+            for item in dimension.items
+            if item not in given.positions and not tags.get(item)
+        ]
+        if strange and own:
             problems.append(f"#{dimension.number} is of {', '.join(strange)} too, which is no face")
-        if faces:
-            found.append(replace(dimension.dimension, faces=tuple(faces)))
+        if own:
+            found.append(replace(dimension.dimension, faces=tuple(own)))
         else:
-            problems.append(f"#{dimension.number} is left out, it is of no face of the shape")
+            problems.append(
+                f"#{dimension.number} is left out, it is of no cylinder of the shape and no thread about one"
+            )
     return ReadDimensions(tuple(found), tuple(problems))
 
 
 def _tags(
-    given: FileDimensions, made_of: Callable[[int], Shape | None], shape: Shape
-) -> Mapping[int, tuple[int, ...]]:
+    given: FileDimensions, made_of: Callable[[int], Shape | None], faces: _ShapeTags
+) -> dict[int, tuple[int, ...]]:
     """Return the tags of the faces that each item of the dimensions stands for; an assembly may hold one several times."""
-    faces = _ShapeTags(shape)
     found = {}
     for number in {item for d in given.dimensions for item in d.items}:
         if number in given.positions:
@@ -120,6 +127,18 @@ def _tags(
             if made is not None:
                 found[number] = faces.of(made)
     return found
+
+
+def _drawn_tags(
+    given: FileDimensions, data: bytes, faces: _ShapeTags
+) -> dict[int, tuple[int, ...]]:
+    """Return the tags of the faces within cylinders that curves draw, as those of threads are, by the numbers of the curves."""
+    # Without the thread's designation nothing says that the hole is not to have the drawn diameter.
+    threads = [d for d in given.dimensions if d.dimension.thread]
+    curves = {i for d in threads for i in d.items if i not in given.positions}
+    if not curves:
+        return {}
+    return {number: faces.within(drawn) for number, drawn in cylinders_in(data, curves).items()}
 
 
 class _ShapeTags:
@@ -137,6 +156,22 @@ class _ShapeTags:
         if kind == TopAbs_FACE:
             return self._by_face.of(made)
         return self._by_edge.of(made) if kind == TopAbs_EDGE else ()
+
+    def within(self, drawn: DrawnThread) -> tuple[int, ...]:
+        """Return the tags of the cylinders of one radius about the axis of a drawn one, no wider than that and beside it along the axis.
+
+        None where they have several radii, or an assembly moves the shape that the curves belong to.
+        """
+        found: dict[int, float] = {}
+        for tag, face in enumerate(self._faces, 1):
+            surface = BRepAdaptor_Surface(face)
+            if surface.GetType() == GeomAbs_Cylinder and _is_within(surface, drawn):
+                if not face.Location().IsIdentity():
+                    return ()
+                found[tag] = surface.Cylinder().Radius()
+        radii = found.values()
+        alike = bool(found) and max(radii) - min(radii) < tolerance.COINCIDENT
+        return tuple(found) if alike else ()
 
     @cached_property
     def _by_edge(self) -> _TagMap:
@@ -174,3 +209,20 @@ def _is_circle(edge: Shape, radius: float) -> bool:
         curve.GetType() == GeomAbs_Circle
         and abs(curve.Circle().Radius() - radius) < tolerance.COINCIDENT
     )
+
+
+def _is_within(surface: Any, drawn: DrawnThread) -> bool:
+    """Return whether a cylinder has the axis of a drawn one, is no wider, and overlaps it along the axis."""
+    cylinder = surface.Cylinder()
+    if cylinder.Radius() > drawn.radius + tolerance.FITTED:
+        return False
+    origin, direction = cylinder.Axis().Location(), cylinder.Axis().Direction()
+    start = np.array([origin.X(), origin.Y(), origin.Z()]) - drawn.point
+    along = np.array([direction.X(), direction.Y(), direction.Z()])
+    ends = np.array(
+        [start + v * along for v in (surface.FirstVParameter(), surface.LastVParameter())]
+    )
+    heights = ends @ drawn.axis
+    aside = np.linalg.norm(ends - heights[:, None] * drawn.axis, axis=1)
+    overlap = min(heights.max(), drawn.high) - max(heights.min(), drawn.low)
+    return bool(aside.max() < tolerance.FITTED and overlap > tolerance.FITTED)

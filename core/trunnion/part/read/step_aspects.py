@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from trunnion.part.read.step_text import BadEntity, StepText
 
-_USAGES = ("GEOMETRIC_ITEM_SPECIFIC_USAGE", "ITEM_IDENTIFIED_REPRESENTATION_USAGE")
+USAGES = ("GEOMETRIC_ITEM_SPECIFIC_USAGE", "ITEM_IDENTIFIED_REPRESENTATION_USAGE")
+"""Entities that tie an aspect, or a size, to an item of a representation."""
 _COMPOSITES = (
     "COMPOSITE_SHAPE_ASPECT",
     "COMPOSITE_GROUP_SHAPE_ASPECT",
@@ -19,7 +20,7 @@ _COMPOSITES = (
 """Aspects that are made of others; those of other types are only related to each other."""
 _NAMED = ("SHAPE_ASPECT", *_COMPOSITES, "DATUM_FEATURE", "INSTANCED_FEATURE")
 ASPECT_TYPES = (
-    *_USAGES,
+    *USAGES,
     *_NAMED,
     "SHAPE_ASPECT_RELATIONSHIP",
     "PROPERTY_DEFINITION",
@@ -34,7 +35,7 @@ class ShapeAspects:
 
     def __init__(self, text: StepText) -> None:
         self._text = text
-        self._usages = text.links(2, 4, *_USAGES)
+        self._usages = text.links(2, 4, *USAGES)
         self._related = text.links(2, 3, "SHAPE_ASPECT_RELATIONSHIP")
         self._properties = text.links(2, None, "PROPERTY_DEFINITION")
         self._shapes = text.links(0, 1, "SHAPE_DEFINITION_REPRESENTATION")

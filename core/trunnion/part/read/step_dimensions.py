@@ -74,9 +74,13 @@ _WRONG_GRADES = b"Open CASCADE STEP processor"
 version 7.9 at least)."""
 _ANNOTATION_WORDS = "equivalent unicode string"
 """The name of the words that an annotation shows (CAx-IF, PMI Unicode String Specification)."""
-_WORDS_KIND = re.compile(r"^[A-Z]{3}\\w")
-"""What such words begin with: `TXT\\w` where they are a note."""
-_LINE_ENDS = re.compile(r"\\n|/n")
+_PART = r"\x"
+"""What parts the words of annotations that are shown together."""
+_KIND = re.compile(r"^(DIM|TXT)\\[a-z]")
+"""What words begin with: those of a dimension, of a note; other kinds are of tolerances and datums."""
+_OTHER_KIND = re.compile(r"^[A-Z]{3}\\[a-z]")
+_CONTROL = re.compile(r"\\[a-z]|/n")
+"""Ends of lines, raised figures and the like within words."""
 
 
 class BadDimension(Exception):
@@ -154,11 +158,11 @@ class _DimensionReader:
         measures, words = self._represented_values(number)
         sized = _sized(measures)
         words += self._aspects.words(aspect)
-        shown = self._annotation_words(number)
+        own, notes = self._annotation_words(number)
         dimension = replace(
             self._toleranced(number, sized),
-            text=self._aspects.name(aspect) or next(iter(shown), DIAMETER),
-            thread=self._thread(number, words, shown),
+            text=next(w for w in (*own, self._aspects.name(aspect), *notes, DIAMETER) if w),
+            thread=self._thread(number, words, own + notes),
         )
         return FileDimension(number=number, dimension=dimension, items=items)
 
@@ -231,21 +235,22 @@ class _DimensionReader:
             )
         return replace(dimension, lower=lower, upper=upper)
 
-    def _annotation_words(self, number: int) -> list[str]:
-        """Return the words that the annotations of a dimension show, where the file says them."""
+    def _annotation_words(self, number: int) -> tuple[list[str], list[str]]:
+        """Return the words that a dimension and its annotations show, where the file gives them; those of dimensions before notes."""
         annotations = self._annotations.get(number, [])
-        definitions = [number, *(c for a in annotations for c in self._characterized.get(a, []))]
-        found = []
+        definitions = [*(c for a in annotations for c in self._characterized.get(a, [])), number]
+        found: dict[bool, list[str]] = {True: [], False: []}
         for definition in definitions:
             for item in self._property_items(definition):
-                try:
-                    words = self._text.entity(item).parameters("DESCRIPTIVE_REPRESENTATION_ITEM")
-                except BadEntity:
+                if item not in self._text:
                     continue
+                words = self._text.entity(item).parameters("DESCRIPTIVE_REPRESENTATION_ITEM")
                 if words and words[0] == _ANNOTATION_WORDS and isinstance(words[-1], str):
-                    lines = _LINE_ENDS.sub(" ", _WORDS_KIND.sub("", words[-1]))
-                    found.append(" ".join(lines.split()))
-        return [w for w in found if w]
+                    for part in words[-1].split(_PART):
+                        if not _OTHER_KIND.match(part) or _KIND.match(part):
+                            plain = " ".join(_CONTROL.sub(" ", _KIND.sub("", part)).split())
+                            found[part.startswith("DIM")] += [plain] if plain else []
+        return found[True], found[False]
 
     def _property_items(self, definition: int) -> list[int]:
         return [

@@ -82,16 +82,23 @@ def length_of(text: StepText, number: int) -> StepMeasure | None:
     named = entity.parameters("REPRESENTATION_ITEM") or own.parameters[:-2]
     name = next((p for p in named if isinstance(p, str)), "")
     return StepMeasure(
-        rounded(value * _unit(text, number, unit)), name.strip().lower(), _qualifiers(text, entity)
+        rounded(value * _named_unit(text, number, unit)),
+        name.strip().lower(),
+        _qualifiers(text, entity),
     )
 
 
-def _unit(text: StepText, number: int, unit: object, depth: int = 0) -> float:
-    """Return how many mm a unit of length is."""
+def _named_unit(text: StepText, number: int, unit: object, depth: int = 0) -> float:
+    """Return how many mm the unit is that an entity names."""
     numbers = numbers_in(unit)
     if len(numbers) != 1 or depth > _CONVERSIONS:
         raise BadEntity(f"#{number} has no unit")
-    entity = text.entity(numbers[0])
+    return unit_of(text, numbers[0], depth)
+
+
+def unit_of(text: StepText, number: int, depth: int = 0) -> float:
+    """Return how many mm a unit of length is, `depth` conversions deep; raise `BadEntity` where it is none."""
+    entity = text.entity(number)
     si = entity.parameters("SI_UNIT")
     if si is not None:
         # As an entity of one type it begins with its dimensions, `*`.
@@ -108,8 +115,8 @@ def _unit(text: StepText, number: int, unit: object, depth: int = 0) -> float:
             if isinstance(value, EntityRecord) and value.parameters:
                 value = value.parameters[0]
             if isinstance(value, float) and 0.0 < value < math.inf:
-                return value * _unit(text, number, measure[-1], depth + 1)
-    raise BadEntity(f"#{number} is in no unit of length (#{numbers[0]})")
+                return value * _named_unit(text, number, measure[-1], depth + 1)
+    raise BadEntity(f"#{number} is no unit of length")
 
 
 def _qualifiers(text: StepText, entity: StepEntity) -> tuple[str, ...]:
