@@ -39,6 +39,12 @@ class AxisRegion:
             else axis_region
         )
 
+    def off(self, frame: Region, radius: float) -> AxisRegion:
+        """Return what of it keeps a cutter of a radius out of an area, itself where that is empty."""
+        return (
+            AxisRegion(self.region.minus(frame.offset(radius - tolerance.SEW))) if frame else self
+        )
+
     def depth(self, points: ArrayLike) -> Floats:
         """Return how far inside the axis region points (k, 2) are (negative outside)."""
         return self.region.signed_distance(np.atleast_2d(np.asarray(points, dtype=np.float64)))

@@ -13,11 +13,12 @@ from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.geometry.arrays import Ints
 from trunnion.geometry.plane.curve import Curve
-from trunnion.geometry.plane.region import Region
+from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.feature import Feature
 from trunnion.model.guides import GuideCurve, GuideKind
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.tabs import Tab, tabs_of
 from trunnion.plan.plane_guides import GuideSpace, area_lines, wall_faces_on, wall_line
 from trunnion.plan.prismatic.regions import (
     Band,
@@ -30,7 +31,9 @@ from trunnion.plan.prismatic.regions import (
     same_curve,
     touching,
 )
+from trunnion.plan.prismatic.tabs import frame_behind
 from trunnion.plan.settings import HALVES
+from trunnion.settings import added
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -113,6 +116,7 @@ class PlaneDrive:
     leaves (0 for finishing); `levels`, `floors` and `walls` are the finished part's, allowances not taken off. `earlier_radius`: radius of
     the cutter that was in the corners before (rest roughing and corners; 0: none), `earlier_allowance` what it left on the walls.
     `faces`: the tags that the operation finishes. `beside`: walls that are not finished, but whose feet the cutter must stay off.
+    `tabs`: bridges from an outline to the blank's frame that stay, `frame` the plan area of that frame, which no pass clears.
     """
 
     feature: str
@@ -128,6 +132,8 @@ class PlaneDrive:
     floor_allowance: float = 0.0
     earlier_radius: float = 0.0
     earlier_allowance: float = 0.0
+    tabs: tuple[Tab, ...] = added((), written=False)
+    frame: Region = added(EMPTY_REGION, written=False)
 
     @property
     def top(self) -> float:
@@ -186,7 +192,10 @@ HALF_OVERLAP = 1.0
 OF_POCKETS = ("rough", "corner", "corner_finish", "floor", "wall", "foot")
 """Kinds of operation that a pocket's drive serves."""
 
-OF_OUTLINES = ("profile_rough", "profile_finish")
+FINISHES_OUTLINE = "profile_finish"
+"""Kind of operation that finishes an outline all round."""
+
+OF_OUTLINES = ("profile_rough", FINISHES_OUTLINE)
 """Kinds of operation that an outline's drive serves."""
 
 IN_CORNERS = ("corner", "corner_finish")
@@ -465,6 +474,7 @@ def _profile(
     operation: Operation, process: ProcessTree, feature: Feature, space: SetupSpace
 ) -> PlaneDrive:
     outline, earlier = space.silhouette(), _earlier(operation, process)
+    tabs = tabs_of(operation.choices, operation.id)
     bottom = profile_bottom(space, operation.choices.get(HALVES) is True)
     level = DriveLevel(
         top=space.top,
@@ -493,6 +503,8 @@ def _profile(
         floor_allowance=0.0,
         earlier_radius=earlier.cutter.radius if earlier else 0.0,
         earlier_allowance=_choice(earlier, WALL_ALLOWANCE) if earlier else 0.0,
+        tabs=tabs,
+        frame=frame_behind(tabs, outline, space.blank_area()),
     )
 
 

@@ -7,19 +7,22 @@ they come near a full turn, and each arc's centre is put where both of its ends 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion import tolerance
 from trunnion.geometry.arrays import Floats
-from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.curve import Curve, turn
 from trunnion.model.motion.toolpath import EMPTY, Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
+from trunnion.model.tabs import Tab
 from trunnion.model.tool import Tool
 from trunnion.toolpath.motion.feed import arc_feed
 from trunnion.toolpath.motion.fixture_links import FixtureSurface
+from trunnion.toolpath.motion.tab_lift import TabLift
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.over_flutes import StockOverFlutes
 
@@ -28,10 +31,19 @@ NOWHERE = (math.nan, math.nan, math.nan)
 
 
 class PathBuilder:
-    """A path in the making. `here` is the tip's position (3,), or None before the first block."""
+    """A path in the making. `here` is the tip's position (3,), or None before the first block.
+
+    Feed moves that would cut into one of `tabs` are lifted over it, whatever heights they are given.
+    """
 
     def __init__(
-        self, tool: Tool, data: CuttingData, stock: PlanningStock, setup: Setup, safety: float
+        self,
+        tool: Tool,
+        data: CuttingData,
+        stock: PlanningStock,
+        setup: Setup,
+        safety: float,
+        tabs: Sequence[Tab] = (),
     ) -> None:
         self.tool = tool
         self.data = data
@@ -39,6 +51,8 @@ class PathBuilder:
         self.safety = safety
         self.fixtures = FixtureSurface.of(setup)
         self.here: Floats | None = None
+        self._over_tabs = TabLift(tabs, tool.radius) if tabs else None
+        self._wanted_height = 0.0
         self._stock = stock
         self._over_flutes = StockOverFlutes(stock, tool)
         self._known = 0
@@ -85,6 +99,7 @@ class PathBuilder:
     def rapid(self, point: ArrayLike) -> None:
         """Move at rapid to a point (3,)."""
         self._add(Motion.RAPID, _three(point), NOWHERE, 0.0, Mark.RETRACT)
+        self._wanted_height = float(self._at()[2])
 
     def lift(self, z: float) -> None:
         """Go straight up to a height: at feed where the flutes scrape stock that the tool stands beside with its neck, else at rapid."""
@@ -96,8 +111,18 @@ class PathBuilder:
         self.rapid((here[0], here[1], z))
 
     def line(self, point: ArrayLike, feed: float, mark: Mark = Mark.CUT) -> None:
-        """Feed straight to a point (3,)."""
-        self._add(Motion.LINE, _three(point), NOWHERE, feed, mark)
+        """Feed straight to a point (3,), over the tabs that are in between."""
+        if self._over_tabs is None:
+            self._add(Motion.LINE, _three(point), NOWHERE, feed, mark)
+            return
+        goal, start = np.array(_three(point)), self._start()
+
+        def position(share: Floats) -> Floats:
+            return np.asarray(start + share[:, None] * (goal - start))
+
+        for _, end, own_feed in self._lifted(position, math.dist(start, goal), feed):
+            self._add(Motion.LINE, _three(end), NOWHERE, own_feed, mark)
+        self._wanted_height = float(goal[2])
 
     def arc(
         self, end: ArrayLike, centre: ArrayLike, sweep: float, feed: float, mark: Mark = Mark.CUT
@@ -107,7 +132,7 @@ class PathBuilder:
         The height changes evenly along it.
         """
         start, goal, middle = (
-            self._at(),
+            self._start(),
             np.array(_three(end)),
             np.asarray(centre, dtype=np.float64)[:2],
         )
@@ -122,12 +147,33 @@ class PathBuilder:
             self.arc(half, middle, 0.5 * sweep, feed, mark)
             self.arc(goal, middle, 0.5 * sweep, feed, mark)
             return
-        if radius * abs(sweep) < tolerance.SHORT_ARC:
-            self.line(goal, feed, mark)
+        if self._over_tabs is None:
+            self._arc(goal, middle, sweep, feed, mark)
             return
-        exact = _equidistant(start[:2], goal[:2], middle)
+        ray = start[:2] - middle
+
+        def position(share: Floats) -> Floats:
+            height = start[2] + share * (goal[2] - start[2])
+            plan = middle + turn(np.tile(ray, (len(share), 1)), share * sweep)
+            # Both ends may be off the circle in the last digits: the move ends where it is to end.
+            return np.column_stack([np.where((share == 1.0)[:, None], goal[:2], plan), height])
+
+        before = 0.0
+        for share, point, own_feed in self._lifted(position, radius * abs(sweep), feed):
+            self._arc(point, middle, (share - before) * sweep, own_feed, mark)
+            before = share
+        self._wanted_height = float(goal[2])
+
+    def _arc(self, goal: Floats, middle: Floats, sweep: float, feed: float, mark: Mark) -> None:
+        """Add an arc of less than a turn, a straight line where it is too short for one."""
+        start = self._at()
+        exact = (
+            None
+            if math.dist(start[:2], middle) * abs(sweep) < tolerance.SHORT_ARC
+            else _equidistant(start[:2], goal[:2], middle)
+        )
         if exact is None:
-            self.line(goal, feed, mark)
+            self._add(Motion.LINE, _three(goal), NOWHERE, feed, mark)
             return
         motion = Motion.ARC_CCW if sweep > 0.0 else Motion.ARC_CW
         self._add(
@@ -168,6 +214,35 @@ class PathBuilder:
             return EMPTY
         self.lift(self.clearance)
         return self._made(0)
+
+    def _lifted(
+        self, position: Callable[[Floats], Floats], length: float, feed: float
+    ) -> list[tuple[float, Floats, float]]:
+        """Return the ends of the pieces of a feed move that goes over tabs: share of it, tip (3,), feed; its own end where none is.
+
+        `position` returns the tips (k, 3) that are wanted at shares (k,). Down a ramp the tool goes no faster than it plunges.
+        """
+        here, ends = self._at(), position(np.array([0.0, 1.0]))
+        assert self._over_tabs is not None  # without tabs nothing is lifted
+        shares = self._over_tabs.breaks(position, length, float(ends[:, 2].min()))
+        if shares is None:
+            return [(1.0, ends[1], feed)]
+        shares = np.concatenate([[0.0], shares])
+        tips = position(shares)
+        tips[:, 2] = np.maximum(tips[:, 2], self._over_tabs.lowest(tips[:, :2]))
+        pieces, before = [], here
+        for share, tip in zip(shares.tolist(), tips, strict=True):
+            drop = float(before[2] - tip[2])
+            travelled = math.hypot(math.dist(before[:2], tip[:2]), drop)
+            steep = drop > tolerance.SHORT_MOVE and drop * feed > self.data.plunge_feed * travelled
+            pieces.append((share, tip, self.data.plunge_feed * travelled / drop if steep else feed))
+            before = tip
+        return pieces
+
+    def _start(self) -> Floats:
+        """Return where the next move would begin if nothing had been lifted over a tab (3,)."""
+        here = self._at()
+        return here if self._over_tabs is None else np.array([*here[:2], self._wanted_height])
 
     def _at(self) -> Floats:
         if self.here is None:

@@ -83,7 +83,7 @@ def corner(
     progress: Progress,
 ) -> Planned:
     """Return the motions that clear what a cutter of `drive.earlier_radius` left in the corners, and what this one leaves."""
-    builder = PathBuilder(tool, data, stock, setup, settings.safety)
+    builder = PathBuilder(tool, data, stock, setup, settings.safety, drive.tabs)
     approach = ContourApproach(
         radius=settings.lead_radius, overlap=0.0, ramp=math.radians(settings.ramp_angle)
     )
@@ -104,7 +104,7 @@ def corner(
                 progress.check()
                 if height.distance not in axis_regions:
                     axis_regions[height.distance] = _passes(
-                        level, height.distance, step, near, mitred=drive.fillet > 0.0
+                        drive, level, height.distance, step, near, tool
                     )
                 axis_region, rims = axis_regions[height.distance]
                 if height.distance not in corner_passes:
@@ -238,10 +238,13 @@ def _reaching(rests: tuple[Region, ...], tool: Tool) -> Region:
 
 
 def _passes(
-    level: DriveLevel, distance: float, step: float, near: Region, *, mitred: bool
+    drive: PlaneDrive, level: DriveLevel, distance: float, step: float, near: Region, tool: Tool
 ) -> tuple[AxisRegion, tuple[Curve, ...]]:
     """Return the axis region and the rims of its rings that come near a rest, the innermost first."""
-    axis_region = AxisRegion.of(level.boundary, distance, mitred=mitred and is_closed(level))
+    mitred = drive.fillet > 0.0 and is_closed(level)
+    axis_region = AxisRegion.of(level.boundary, distance, mitred=mitred).off(
+        drive.frame, tool.radius
+    )
     if not axis_region.region:
         return axis_region, ()
     return axis_region, tuple(

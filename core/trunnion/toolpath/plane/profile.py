@@ -90,8 +90,12 @@ def profile_rough(
     settings: ProfileRoughSettings,
     progress: Progress,
 ) -> Planned:
-    """Return the motions that take the blank's margin off the profile by layers, in rings from outside in."""
-    builder = PathBuilder(tool, data, stock, setup, settings.safety)
+    """Return the motions that take the blank's margin off the profile by layers, in rings from outside in.
+
+    Where tabs hold the part to a frame of the blank, the frame stays: the outermost ring beside it opens the channel by a slot, at the feed
+    that removes as much a minute as the width of cut does.
+    """
+    builder = PathBuilder(tool, data, stock, setup, settings.safety, drive.tabs)
     approach = ContourApproach(
         radius=settings.lead_radius,
         overlap=settings.overlap,
@@ -101,14 +105,10 @@ def profile_rough(
     rim = _blank_rim(stock)
     for guide in drive.walls:
         margin = float(guide.curve.distance(rim).max())
-        count = max(
-            1, math.ceil((margin - drive.wall_allowance) / data.width - tolerance.COINCIDENT)
-        )
-        # Whole widths from the part outwards: the outermost ring has the least to cut, along straight sides often nothing.
-        distances = [
-            tool.radius + drive.wall_allowance + n * data.width for n in reversed(range(count))
-        ]
+        distances = _ring_distances(drive, tool, data.width, margin)
         axis_regions: dict[tuple[int, float], tuple[AxisRegion, list[Curve]]] = {}
+        slots = _slots(drive, guide, distances, tool)
+        slow = replace(data, feed=data.feed * min(data.width / tool.diameter, 1.0))
         margins: dict[int, Region] = {}
         for z in steps_down(max(guide.top, drive.stock_top), guide.bottom, data.depth):
             boundary = level_at(drive, z).boundary
@@ -121,7 +121,7 @@ def profile_rough(
                 )
                 key = (id(boundary), distance)
                 if key not in axis_regions:
-                    axis_region = AxisRegion.of(boundary, distance)
+                    axis_region = AxisRegion.of(boundary, distance).off(drive.frame, tool.radius)
                     axis_regions[key] = (
                         axis_region,
                         _touching(
@@ -129,6 +129,7 @@ def profile_rough(
                         ),
                     )
                 axis_region, passes = axis_regions[key]
+                builder.data = slow if distance in slots else data
                 _cut_over_stock(
                     builder,
                     passes,
@@ -153,7 +154,7 @@ def profile_finish(
     progress: Progress,
 ) -> Planned:
     """Return the motions that finish the profile in axial steps down to its bottom."""
-    builder = PathBuilder(tool, data, stock, setup, settings.safety)
+    builder = PathBuilder(tool, data, stock, setup, settings.safety, drive.tabs)
     approach = ContourApproach(
         radius=settings.lead_radius,
         overlap=settings.overlap,
@@ -168,7 +169,9 @@ def profile_finish(
                 (guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW),
                 f"{drive.feature}: pass at {z:.3f}",
             )
-            axis_region = AxisRegion.of(level_at(drive, z).boundary, distance)
+            axis_region = AxisRegion.of(level_at(drive, z).boundary, distance).off(
+                drive.frame, tool.radius
+            )
             parts = contour_parts(axis_region, guide.curve, distance)
             cut_parts(builder, parts, z, axis_region, approach, past=guide.run_of is None)
         if tool.corner_radius > 0.0:
@@ -189,6 +192,47 @@ def _outside(boundary: Region, stock: PlanningStock, allowance: float) -> Region
     """Return the blank's margin: what of its box is outside the part and the allowance on it."""
     low, high = stock.box()
     return boundary.offset(-allowance).intersect(Region.rectangle(*low, *high))
+
+
+def _ring_distances(drive: PlaneDrive, tool: Tool, width: float, margin: float) -> list[float]:
+    """Return how far from the part the axis goes in each ring, the outermost first, so that a margin of the blank is taken off.
+
+    Whole widths from the part outwards: the outermost ring has the least to cut, along straight sides often nothing. Beside a frame that
+    tabs hold the part to, the rings of the channel are even, so that it is as wide as the tabs reach.
+    """
+    inner, channel = tool.radius + drive.wall_allowance, 0.0
+    found = []
+    if drive.tabs:
+        channel = max(max(t.reach for t in drive.tabs) - tool.radius - inner, 0.0)
+        number = math.ceil(channel / width - tolerance.COINCIDENT)
+        found = [inner + channel * n / number for n in range(number)]
+        inner += channel
+    count = max(
+        1, math.ceil((margin - drive.wall_allowance - channel) / width - tolerance.COINCIDENT)
+    )
+    found += [inner + n * width for n in range(count)]
+    return found[::-1]
+
+
+def _slots(
+    drive: PlaneDrive, guide: WallGuide, distances: list[float], tool: Tool
+) -> frozenset[float]:
+    """Return the distances of rings that are in full width beside a frame: somewhere no ring goes outside of them."""
+    if not drive.frame:
+        return frozenset()
+    boundary = level_at(drive, guide.bottom).boundary
+    found, outer_is_whole = [], True
+    for distance in distances:
+        axis_region = AxisRegion.of(boundary, distance)
+        passes, kept = (
+            contour_parts(region, guide.curve, distance)
+            for region in (axis_region, axis_region.off(drive.frame, tool.radius))
+        )
+        if kept and not outer_is_whole:
+            found.append(distance)
+        whole, done = (sum(c.length for c in curves) for curves in (passes, kept))
+        outer_is_whole = done > whole - tolerance.SEW
+    return frozenset(found)
 
 
 def _cut_over_stock(
@@ -272,7 +316,9 @@ def _remaining_findings(
     drive: PlaneDrive, guide: WallGuide, tool: Tool, allowance: float
 ) -> list[Finding]:
     distance, height = tool.radius + allowance, guide.top - guide.bottom
-    axis_region = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance)
+    axis_region = AxisRegion.of(level_at(drive, guide.bottom).boundary, distance).off(
+        drive.frame, tool.radius
+    )
     if not axis_region.region:
         return [
             warning(
