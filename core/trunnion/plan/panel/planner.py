@@ -25,6 +25,7 @@ from trunnion.plan.panel.rules import TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
 from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.plan.prismatic.tabs import TabSettings
 from trunnion.plan.settings import RouteSettings
 from trunnion.progress import Progress
 
@@ -41,6 +42,7 @@ class PanelPlanner:
         SidesSettings,
         *HOLE_SETTINGS,
         LeaningSettings,
+        TabSettings,
     )
     cutter_rules: tuple[str, ...] = tuple(TASK_MAKERS)
 

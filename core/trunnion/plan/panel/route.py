@@ -13,6 +13,7 @@ from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import SizeEntry
 from trunnion.model.setup import Setup
+from trunnion.model.tabs import POSITIONS
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.cutting.milling import (
@@ -41,6 +42,7 @@ from trunnion.plan.panel.feasibility import (
 from trunnion.plan.panel.rules import NEEDED, SWARF, TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.panel.sides import shared_out
+from trunnion.plan.panel.tabs import frame_at_edges, with_tabs
 from trunnion.plan.panel.tasks import (
     DEPENDENT,
     REST,
@@ -53,6 +55,7 @@ from trunnion.plan.panel.tasks import (
 from trunnion.plan.panel.webs import thin_webs
 from trunnion.plan.prismatic.drive import FLOOR_ALLOWANCE, WALL_ALLOWANCE
 from trunnion.plan.prismatic.regions import SectionSource, SetupSpace, parent_of
+from trunnion.plan.prismatic.tabs import TabSettings
 from trunnion.plan.process import process_of
 from trunnion.plan.sequence import OrderedOperation, ordered
 from trunnion.plan.settings import HALVES, RouteSettings
@@ -143,9 +146,13 @@ def make_route(
         share = progress.part(n / len(states), (n + 1) / len(states))
         state.progress = share
         made = _sequenced(state, _with_cutters(state, mine, plan.stages, share), plan.stages)
+        made, notes = with_tabs(made, state.space, choose(TabSettings, words))
+        state.findings += notes
         own = {id for o in made for id in o.all_features}
         here = [f for f in mine if f.id in own]
         findings += state.findings
+        if made:
+            findings += frame_at_edges(any(POSITIONS in o.choices for o in operations), state.space)
         if operations and made:
             findings.append(turned(states[0].space, state.space))
             findings += thin_webs(state.space, here, cut, choose(SidesSettings, words).thin_web)
