@@ -16,11 +16,13 @@ from trunnion.model.motion.program import Program, section_of
 from trunnion.model.process import ProcessTree
 from trunnion.model.session import PostedFile, Session
 from trunnion.model.setup import Setup
+from trunnion.model.tabs import PlannedTab, Tab, tabs_of
 from trunnion.model.verdict import Outcome, Verdict
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.work_position import work_positions_of
 from trunnion.plan import setups
 from trunnion.plan.holes.demand import bore_demands
+from trunnion.plan.prismatic.drive import FINISHES_OUTLINE, OF_OUTLINES
 from trunnion.post.header import Header
 from trunnion.post.readers import read_program
 from trunnion.post.settings import OF_MACHINE, PostSettings
@@ -269,8 +271,27 @@ def prove_programs(
         material=context.shop.materials.get(session.process.material),
         facets_fork=fork,
         bore_demands=_bore_demands(session, context),
+        tabs=planned_tabs(session.process),
     )
     return verdict
+
+
+def planned_tabs(process: ProcessTree) -> tuple[PlannedTab, ...]:
+    """Return the tabs that a plan leaves, each once, with the radius of the cutter that is at the wall last: one that finishes the
+    outline, else the one that roughs it."""
+    found: dict[tuple[str, Tab], tuple[bool, float]] = {}
+    for operation in process.operations:
+        if operation.suppressed or operation.kind not in OF_OUTLINES:
+            continue
+        finishes = operation.kind == FINISHES_OUTLINE
+        for tab in tabs_of(operation.choices, operation.id):
+            known = found.setdefault((operation.setup, tab), (finishes, operation.cutter.radius))
+            if finishes > known[0]:
+                found[operation.setup, tab] = (finishes, operation.cutter.radius)
+    return tuple(
+        PlannedTab(setup=setup, tab=tab, radius=radius)
+        for (setup, tab), (_, radius) in found.items()
+    )
 
 
 def _bore_demands(session: Session, context: Context) -> tuple[BoreDemand, ...]:

@@ -29,13 +29,14 @@ DECIMALS = 9
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CoverageResult:
-    """Coverage and what goes with it."""
+    """Coverage and what goes with it; `on_purpose` (s,) are the samples with what tabs leave on them."""
 
     coverage: float
     reachable: float
     faces: tuple[FaceProof, ...]
     deviation: Deviation
     findings: tuple[Finding, ...]
+    on_purpose: Bools
 
 
 def covered(
@@ -52,6 +53,7 @@ def covered(
     unasked: Collection[int] = (),
     turned: TurningResidual | None = None,
     uncut: Blank | None = None,
+    on_tab: Bools | None = None,
 ) -> CoverageResult:
     """Return what all setups together finish of the part.
 
@@ -59,7 +61,8 @@ def covered(
     something is not finished, as if nothing held the part. They lean where the side's own of `machines` does, which
     needs facets of all faces; without machines they are upright. Of faces of tags in `unasked`
     nothing has to be finished, and nothing is told. Where turning has come before, `blank` is what it left, `turned` what it has done to
-    the part and `uncut` the blank before it.
+    the part and `uncut` the blank before it. What stands on samples `on_tab` (s,) is left by intention: their area is neither wanted nor
+    finished.
     """
     frame = sides[0].frame
     n = len(tags)
@@ -78,11 +81,13 @@ def covered(
     finished = (np.abs(residual) <= settings.tolerance + settings.allowance) & ~blank_face[
         samples.face
     ]
-    open_rows = np.flatnonzero(~finished & ~blank_face[samples.face] & (residual > 0.0))
+    is_open = ~finished & ~blank_face[samples.face] & (residual > 0.0)
+    on_purpose = np.zeros(len(samples), bool) if on_tab is None else on_tab & is_open
+    open_rows = np.flatnonzero(is_open & ~on_purpose)
     lost = np.zeros(len(samples), bool)
     lost[_unreached(samples, open_rows, sides, tools, settings, progress, machines)] = True
     area, done, away = (
-        _by_face(samples, samples.area * share, n) for share in (1.0, finished, lost)
+        _by_face(samples, samples.area * share, n) for share in (~on_purpose, finished, lost)
     )
     wanted = float(area[~blank_face].sum())
     reachable_area = wanted - float(away.sum())
@@ -90,7 +95,9 @@ def covered(
     gouge = np.max([cut_before, *(p.contact.face_depth[:, 0] for p in proofs)], axis=0)
     is_cut = bool(proofs) or turned is not None
     every = progress.aside(
-        lambda _: _faces(samples, tags, residual, area, done, away, gouge, blank_face, set(planned))
+        lambda _: _faces(
+            samples, ~on_purpose, tags, residual, area, done, away, gouge, blank_face, set(planned)
+        )
     )
     faces = tuple(f for f in every if f.face not in unasked)
     shown = ~unasked_face[samples.face]
@@ -105,6 +112,7 @@ def covered(
         reachable=of_reachable,
         faces=faces,
         findings=_findings(faces, of_reachable, settings),
+        on_purpose=on_purpose,
         deviation=Deviation(
             face=tags[samples.face[shown]],
             point=frame.to_world(samples.point[shown]),
@@ -149,6 +157,7 @@ def _by_face(samples: Samples, weight: Floats, n: int) -> Floats:
 
 def _faces(
     samples: Samples,
+    counted: Bools,
     tags: Ints,
     residual: Floats,
     area: Floats,
@@ -160,9 +169,11 @@ def _faces(
 ) -> tuple[FaceProof, ...]:
     n = len(tags)
     least, most = np.full(n, np.inf), np.full(n, -np.inf)
-    np.minimum.at(least, samples.face, residual)
-    np.maximum.at(most, samples.face, residual)
-    mean = _by_face(samples, samples.area * residual, n) / np.maximum(area, tolerance.PARAMETRIC)
+    np.minimum.at(least, samples.face[counted], residual[counted])
+    np.maximum.at(most, samples.face[counted], residual[counted])
+    mean = _by_face(samples, samples.area * counted * residual, n) / np.maximum(
+        area, tolerance.PARAMETRIC
+    )
     least, most = np.where(np.isfinite(least), least, 0.0), np.where(np.isfinite(most), most, 0.0)
     return tuple(
         FaceProof(

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from functools import partial
 
+import numpy as np
+
 from trunnion.findings import Finding, Severity
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
@@ -17,6 +19,7 @@ from trunnion.model.blank import Blank
 from trunnion.model.hole_demand import BoreDemand
 from trunnion.model.material import Machine, Material
 from trunnion.model.motion.program import Program
+from trunnion.model.tabs import PlannedTab
 from trunnion.model.tool import Tool
 from trunnion.model.verdict import Offer, Outcome, Verdict
 from trunnion.part.part import Part
@@ -32,6 +35,7 @@ from trunnion.verify.judge.overload import load_findings
 from trunnion.verify.judge.part_facets import FacetsFork, part_facets
 from trunnion.verify.judge.setups import SetupProof, prove_setup, stock_of
 from trunnion.verify.judge.sides import sides_of
+from trunnion.verify.judge.tabs import measured, on_tabs, tab_findings
 from trunnion.verify.judge.turned import (
     TurnedWork,
     prove_turned,
@@ -58,13 +62,15 @@ def prove(
     material: Material | None = None,
     facets_fork: FacetsFork | None = None,
     bore_demands: Sequence[BoreDemand] = (),
+    tabs: Sequence[PlannedTab] = (),
 ) -> Verdict:
     """Return the verdict on the programs of all setups, in the order they are cut: each finds the stock that those before it left.
 
     `tools` are the catalogue's, for what could be reached at all; `machines` those of the programs, one each (without a program: the one
     that the part could be reached on); `planned_faces` the tags that some operation means to finish. Without a material nothing is said
     of power. `facets_fork` are the triangles of all faces, where they are begun already; `bore_demands` the threads and fits of bores.
-    Turning comes first, in setups of its own: raises `BadInput` where it comes later or the blank is none of revolution.
+    Turning comes first, in setups of its own: raises `BadInput` where it comes later or the blank is none of revolution. `tabs` are those
+    that the plan leaves, in setups of these programs: what stands of them is measured and told, and counts as left by intention.
     """
     turning = in_order(programs)
     turned: TurnedWork | None = None
@@ -93,6 +99,7 @@ def prove(
         part.backing,
         turned,
         bore_demands,
+        tabs,
     )
 
 
@@ -110,12 +117,13 @@ def prove_surfaces(
     unasked: Collection[int] = (),
     turned: TurnedWork | None = None,
     bore_demands: Sequence[BoreDemand] = (),
+    tabs: Sequence[PlannedTab] = (),
 ) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
 
     `facets` are the same faces as triangles, in the first setup's frame: without them no tool may lean. `unasked` are the tags of faces
     that nobody wants finished: they are in the way of tools, and material. `turned` is the turning before these programs, which has made
-    the blank what it is. Raises `BadInput` for turning among them.
+    the blank what it is; `tabs` are left by intention. Raises `BadInput` for turning among them.
     """
     refuse_turning(section for program in programs for section in program.sections)
     frames = [p.setup.frame for p in programs] or [blank.frame]
@@ -154,6 +162,8 @@ def prove_surfaces(
     if turned is not None:
         before = turned_faces(turned, samples, frames[0], len(surfaces[0].tag))
         findings += turned_findings(turned, samples, frames[0], surfaces[0].tag, material, settings)
+    setup_frames = {p.setup.name: p.setup.frame for p in programs}
+    tabs = [t for t in tabs if t.setup in setup_frames]
     whole = covered(
         samples,
         surfaces[0].tag,
@@ -168,8 +178,12 @@ def prove_surfaces(
         unasked,
         before,
         turned.before if turned is not None else None,
+        on_tabs(samples, frames[0], tabs, setup_frames) if tabs else None,
     )
     findings += whole.findings
+    if tabs:
+        walls = np.unique(surfaces[0].tag[samples.face[whole.on_purpose]])
+        findings += tab_findings(measured(tabs, setup_frames, stock), walls)
     operations, blocks = progress.aside(
         lambda _: (
             tuple(
