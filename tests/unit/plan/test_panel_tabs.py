@@ -10,10 +10,16 @@ import cadquery as cq
 import numpy as np
 import pytest
 
+from seeded.edged_panels import edged_panel
 from trunnion.model.tabs import POSITIONS, tabs_of, written
 from trunnion.pipeline import Engine
 from trunnion.pipeline.proof.posted_programs import planned_tabs, programs_of, prove_programs
+from trunnion.plan.panel.tabs import with_tabs
+from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.plan.prismatic.tabs import TabSettings
+from trunnion.plan.settings import HALVES
 from trunnion.progress import NO_PROGRESS
+from trunnion.settings import choose
 
 SMALL = {
     "route.largest": 10.0,
@@ -126,6 +132,53 @@ def test_without_tabs_nothing_of_a_plan_changes(plate: Path) -> None:
     assert none.process.operations == other.process.operations
     assert [p.key for p in none.paths] == [p.key for p in other.paths]
     assert not [o for o in none.process.operations if POSITIONS in o.choices]
+
+
+def test_slimmer_cutters_in_corners_of_the_outline_leave_them_too(tmp_path) -> None:
+    """Roughing, its rest, finishing and its corners: each of them goes over the tabs with its own radius."""
+    shape = cq.Workplane("XY").box(140.0, 90.0, 30.0)
+    for x in (-40.0, 0.0, 40.0):
+        notch = cq.Workplane("XY").box(17.0, 24.0, 90.0).edges("|Z").fillet(2.6)
+        shape = shape.cut(notch.translate((x, 45.0, 0.0)))
+    pocket = cq.Workplane("XY").box(40.0, 25.0, 8.0).edges("|Z").fillet(6.0)
+    shape = shape.cut(pocket.translate((-20.0, -10.0, 15.0)))
+    path = tmp_path / "notched.step"
+    cq.exporters.export(shape, str(path))
+    engine = Engine()
+    choices = {"profile.tabs.count": 4, "blank.side": 40.0, "repair.rounds": 0}
+    session = engine.run(engine.with_choices(engine.open(path), choices))
+    outline = [o for o in session.process.operations if o.feature.startswith("profile")]
+    assert {"corner", "corner_finish"} < {o.kind for o in outline}
+    assert {len(tabs_of(o.choices, o.id)) for o in outline} == {4}
+    assert session.verdict.releases and session.verdict.coverage > 0.999
+    found = codes(session.verdict.findings)
+    assert found.count("verify.tabs") == 1 and "verify.tab-cut" not in found
+
+
+def test_setups_on_edges_have_the_frame_in_their_way(tmp_path) -> None:
+    path = tmp_path / "edged.step"
+    cq.exporters.export(cq.Workplane(obj=cq.Shape.cast(edged_panel(1).shape)), str(path))
+    engine = Engine()
+    words = {"profile.tabs.count": 4, "blank.side": 45.0}
+    session = engine.run(engine.with_choices(engine.open(path), words), until="route")
+    edges = [s.name for s in session.process.setups[1:]]
+    assert edges
+    assert [f.where[0] for f in session.findings() if f.code == "route.frame-at-edge"] == edges
+
+
+def test_an_outline_cut_half_from_each_side_has_none(held) -> None:
+    operations = [
+        replace(o, choices={**o.choices, HALVES: True}) for o in held[1].process.operations
+    ]
+    space = SetupSpace.of(
+        held[0].context.machined(held[1].choices, NO_PROGRESS).part,
+        held[1].recognition,
+        held[1].blank,
+        held[1].process.setups[0],
+    )
+    changed, (found,) = with_tabs(operations, space, choose(TabSettings, held[1].choices))
+    assert changed == operations
+    assert found.code == "route.no-tabs" and "half from each side" in found.text
 
 
 @pytest.mark.parametrize(

@@ -146,7 +146,7 @@ def make_route(
         share = progress.part(n / len(states), (n + 1) / len(states))
         state.progress = share
         made = _sequenced(state, _with_cutters(state, mine, plan.stages, share), plan.stages)
-        made, notes = with_tabs(made, state.space, choose(TabSettings, words))
+        made, notes = with_tabs(made, state.space, choose(TabSettings, words), share)
         state.findings += notes
         own = {id for o in made for id in o.all_features}
         here = [f for f in mine if f.id in own]

@@ -13,6 +13,7 @@ from trunnion.plan.prismatic.drive import IN_CORNERS, OF_OUTLINES, WALL_ALLOWANC
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.prismatic.tabs import TabForm, TabSettings, spread_tabs
 from trunnion.plan.settings import HALVES
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value
 from trunnion.units import trimmed
 
@@ -21,7 +22,10 @@ LEAD_SPACE = 5.0
 
 
 def with_tabs(
-    operations: Sequence[Operation], space: SetupSpace, settings: TabSettings
+    operations: Sequence[Operation],
+    space: SetupSpace,
+    settings: TabSettings,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[list[Operation], list[Finding]]:
     """Return a setup's operations, those on its outline with the tabs that they leave, and what is told of them.
 
@@ -46,7 +50,7 @@ def with_tabs(
             )
             continue
         form = _form(mine, space, settings)
-        wanted, tabs = _positioned(form, space, settings)
+        wanted, tabs = _positioned(form, space, settings, progress)
         findings.append(_report(feature, wanted, tabs, form))
         if tabs:
             given = _choices(tabs, settings)
@@ -94,7 +98,9 @@ def _form(operations: Sequence[Operation], space: SetupSpace, settings: TabSetti
     )
 
 
-def _positioned(form: TabForm, space: SetupSpace, settings: TabSettings) -> tuple[int, list[Tab]]:
+def _positioned(
+    form: TabForm, space: SetupSpace, settings: TabSettings, progress: Progress
+) -> tuple[int, list[Tab]]:
     """Return how many tabs are wanted along all outlines, and those that there are."""
     around, blank, wanted = space.silhouette(), space.blank_area(), 0
     tabs: list[Tab] = []
@@ -104,7 +110,7 @@ def _positioned(form: TabForm, space: SetupSpace, settings: TabSettings) -> tupl
         spaced = piece.outer.length / settings.distance if settings.distance > 0.0 else 0.0
         count = max(settings.count, math.ceil(spaced))
         wanted += count
-        tabs += spread_tabs(piece.outer, around, blank, space.section, form, count)
+        tabs += spread_tabs(piece.outer, around, blank, space.section, form, count, progress)
     return wanted, tabs
 
 

@@ -19,10 +19,15 @@ from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.plane.curve import Curve
 from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.tabs import Tab
+from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import setting, settings
 
 STEP = 1.0
-"""mm between positions along the outline that are tried, and between the points that are looked at behind and in front of them."""
+"""mm between positions along the outline that are tried, and between the points that are looked at behind them."""
+AHEAD = 3.0
+"""mm between the points that are looked at in front of them: the channel and the frame are wider."""
+SAME = 6
+"""Decimals of a distance in mm to which two ways to spread tabs are equally good; the one that begins first is taken."""
 TALL = 3.0
 """Heights of a tab that the wall over it stands at least, where the part is so tall: over a lower one a floor no thicker than the tab
 bends."""
@@ -39,7 +44,7 @@ class TabSettings:
         unit="",
         low=0,
         high=200,
-        label="Tabs",
+        label="Number of tabs",
         help="How many tabs hold the part in the frame of its blank when its outline is cut, spread evenly over straight, sturdy pieces of "
         "it; they are cut off by hand afterwards. 0: none, or as the distance says. They need a blank that is wider than the part and the "
         "channel around it (blank.side).",
@@ -127,6 +132,7 @@ def spread_tabs(
     section: Callable[[float], Region],
     form: TabForm,
     count: int,
+    progress: Progress = NO_PROGRESS,
 ) -> tuple[Tab, ...]:
     """Return at most `count` tabs along a closed outline, in its direction, as evenly as they can be spread.
 
@@ -134,9 +140,10 @@ def spread_tabs(
     a tab's width, with what a cutter leaves of them at the wall. Fewer, or none, where no more positions are good.
     """
     positions, middles, outwards = _straight(outline, form)
-    good = _held(middles, outwards, around, blank, section, form)
+    good = _held(middles, outwards, around, blank, section, form, progress)
     positions, middles, outwards = positions[good], middles[good], outwards[good]
-    rows = _spread(positions, middles, outline.length, 2.0 * form.half_length + form.width, count)
+    apart = 2.0 * form.half_length + form.width
+    rows = _spread(positions, middles, outline.length, apart, count, progress)
     return tuple(form.at(middles[k], outwards[k]) for k in rows)
 
 
@@ -213,6 +220,7 @@ def _held(
     blank: Region,
     section: Callable[[float], Region],
     form: TabForm,
+    progress: Progress,
 ) -> Bools:
     """Return which positions (k, 2) have sturdy material behind them, and the channel and the frame in front."""
     if not len(middles):
@@ -221,13 +229,16 @@ def _held(
     half, off = form.half_length, tolerance.OFF_PLANE
     good = np.ones(len(middles), bool)
 
-    def keep(area: Region, first: float, last: float, inside: float = 0.0) -> None:
+    def keep(
+        area: Region, first: float, last: float, inside: float = 0.0, step: float = STEP
+    ) -> None:
         """Keep the positions where all points between two distances outwards are at least so far inside an area."""
         rows = np.flatnonzero(good)
+        progress.check()
         if not len(rows):
             return
-        across = np.linspace(-half, half, math.ceil(2.0 * half / STEP) + 1)
-        deep = np.linspace(first, last, math.ceil(abs(last - first) / STEP) + 1)
+        across = np.linspace(-half, half, math.ceil(2.0 * half / step) + 1)
+        deep = np.linspace(first, last, math.ceil(abs(last - first) / step) + 1)
         u, v = (a.ravel() for a in np.meshgrid(across, deep, indexing="ij"))
         tangent = np.stack([-outwards[rows, 1], outwards[rows, 0]], axis=1)
         points = (
@@ -237,8 +248,9 @@ def _held(
         good[rows] = (depth >= inside).all(axis=1)
 
     beyond = form.channel + form.frame
-    keep(blank.minus(around), off, form.channel)
-    keep(_outside_channel(around, blank, form.channel), form.channel, beyond, -tolerance.SEW)
+    frame = _outside_channel(around, blank, form.channel)
+    keep(blank.minus(around), off, form.channel, step=AHEAD)
+    keep(frame, form.channel, beyond, -tolerance.SEW, AHEAD)
     highest = max(form.top - off, tab.bottom + off)
     for z in np.unique(
         np.minimum([tab.bottom + off, tab.bottom + 0.5 * tab.height, tab.top], highest)
@@ -250,33 +262,42 @@ def _held(
 
 
 def _spread(
-    positions: Floats, middles: Floats, length: float, apart: float, count: int
+    positions: Floats,
+    middles: Floats,
+    length: float,
+    apart: float,
+    count: int,
+    progress: Progress,
 ) -> list[int]:
     """Return the rows of positions (k,) along a closed outline that are spread most evenly, none closer than `apart` mm in plan or along
     it: for each first one the good positions that lie next to even distances, and of all these the ones that lie next at the worst.
 
     Where so many don't go, the largest number below that does.
     """
+    order = np.argsort(positions, kind="stable")
+    # Once more before and behind, so that the nearest one is found across the curve's start.
+    known = np.concatenate([positions[order] + turn * length for turn in (-1.0, 0.0, 1.0)])
     for number in range(min(count, len(positions), int(length / apart)), 0, -1):
-        best: tuple[float, list[int]] | None = None
-        for first in positions:
-            wanted = first + np.arange(number) * length / number
-            off = np.abs((positions[None] - wanted[:, None] + 0.5 * length) % length - 0.5 * length)
-            rows = [int(k) for k in off.argmin(axis=1)]
-            worst = float(off.min(axis=1).max())
-            if (best is None or worst < best[0] - tolerance.COINCIDENT) and _are_apart(
-                positions[rows], middles[rows], length, apart
-            ):
-                best = worst, rows
-        if best is not None:
-            return sorted(best[1], key=lambda k: float(positions[k]))
+        progress.check()
+        wanted = (positions[order][:, None] + np.arange(number) * length / number) % length
+        after = np.clip(np.searchsorted(known, wanted), 1, len(known) - 1)
+        before = after - 1
+        nearest = np.where(wanted - known[before] <= known[after] - wanted, before, after)
+        worst = np.abs(known[nearest] - wanted).max(axis=1)
+        found = nearest % len(positions)
+        gaps = (np.roll(positions[order][found], -1, axis=1) - positions[order][found]) % length
+        if number > 1:
+            worst[gaps.min(axis=1) < apart] = np.inf
+        for row in np.argsort(worst.round(SAME), kind="stable"):
+            if worst[row] == np.inf:
+                break
+            rows = order[np.sort(found[row])]
+            if _are_apart(middles[rows], apart):
+                return [int(k) for k in rows]
     return []
 
 
-def _are_apart(positions: Floats, middles: Floats, length: float, apart: float) -> bool:
-    """Return whether no two of some positions are closer than `apart` mm, along the outline or in plan."""
-    rows, others = np.triu_indices(len(positions), 1)
-    gap = np.abs(positions[rows] - positions[others])
-    gap = np.minimum(gap, length - gap)
-    plan = np.hypot(*(middles[rows] - middles[others]).T)
-    return bool((np.minimum(gap, plan) >= apart).all())
+def _are_apart(points: Floats, apart: float) -> bool:
+    """Return whether no two of some points (k, 2) are closer than `apart` mm."""
+    rows, others = np.triu_indices(len(points), 1)
+    return bool((np.hypot(*(points[rows] - points[others]).T) >= apart).all())
