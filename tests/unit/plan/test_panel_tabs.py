@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from seeded.edged_panels import edged_panel
-from trunnion.model.tabs import POSITIONS, tabs_of, written
+from trunnion.model.tabs import HEIGHT, POSITIONS, tabs_of, written
 from trunnion.pipeline import Engine
 from trunnion.pipeline.proof.posted_programs import planned_tabs, programs_of, prove_programs
 from trunnion.plan.panel.tabs import with_tabs
@@ -106,6 +106,30 @@ def test_tabs_where_the_plan_says_others_are_missing_material(held) -> None:
     assert "verify.tabs" not in codes(verdict.findings)
     assert verdict.coverage < held[1].verdict.coverage
     assert {"verify.coverage", "verify.unfinished"} & set(codes(verdict.findings))
+
+
+def test_tabs_thicker_than_the_plan_says_are_told(held) -> None:
+    engine, session = held
+    thinner = tuple(
+        replace(o, choices={**o.choices, HEIGHT: 0.5}) if POSITIONS in o.choices else o
+        for o in session.process.operations
+    )
+    strange = replace(session, process=replace(session.process, operations=thinner))
+    verdict = prove_programs(strange, engine.context, programs_of(session), NO_PROGRESS)
+    assert codes(verdict.findings).count("verify.tab-thick") == 4
+    assert verdict.coverage < held[1].verdict.coverage
+
+
+def test_the_width_that_is_asked_for_is_enough(plate: Path) -> None:
+    """What the error says of the blank does it, and a millimetre less does not."""
+    _, session = run(plate, "route", count=4, frame=12.0)
+    (told,) = [f for f in session.findings() if f.code == "route.no-tabs"]
+    needed = float(told.remedy.split("make the blank wider: ")[1].split(" mm")[0])
+    for side, code in ((needed, "route.tabs"), (needed - 1.0, "route.no-tabs")):
+        engine = Engine()
+        choices = {**SMALL, "profile.tabs.count": 4, "profile.tabs.frame": 12.0, "blank.side": side}
+        session = engine.run(engine.with_choices(engine.open(plate), choices), until="route")
+        assert code in codes(session.findings())
 
 
 def test_a_finishing_pass_that_does_not_know_them_cuts_them_off_and_that_is_told(held) -> None:

@@ -18,7 +18,8 @@ from trunnion.settings import Value
 from trunnion.units import trimmed
 
 LEAD_SPACE = 5.0
-"""mm that the channel is wider than the largest cutter on the outline, at least: space for the finishing cutter's leads."""
+"""mm that the channel is wider than the largest cutter on the outline and the allowance: space for the finishing cutter's leads, and one or
+more rings of roughing beside the slot that opens it."""
 
 
 def with_tabs(
@@ -79,18 +80,15 @@ def frame_at_edges(tabs: bool, space: SetupSpace) -> list[Finding]:
 
 
 def _form(operations: Sequence[Operation], space: SetupSpace, settings: TabSettings) -> TabForm:
-    """Return what the tabs of an outline have in common; the channel is two rings of roughing wide, and wider than every cutter."""
+    """Return what the tabs of an outline have in common. How wide the channel is follows from the cutters alone, not from their data, which
+    depend on the blank."""
     widest = max(o.cutter.diameter for o in operations)
-    rings = [
-        o.cutter.diameter + o.data.width + float(o.choices.get(WALL_ALLOWANCE, 0.0))
-        for o in operations
-        if o.kind == "profile_rough"
-    ]
+    allowance = max(float(o.choices.get(WALL_ALLOWANCE, 0.0)) for o in operations)
     return TabForm(
         width=settings.width,
         height=settings.height,
         ramp=math.radians(settings.ramp_angle),
-        channel=max([widest + LEAD_SPACE, *rings]),
+        channel=widest + allowance + LEAD_SPACE,
         frame=settings.frame,
         radius=0.5 * widest,
         bottom=profile_bottom(space, False),
