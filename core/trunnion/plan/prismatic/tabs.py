@@ -46,8 +46,8 @@ class TabSettings:
         high=200,
         label="Number of tabs",
         help="Of panels alone: how many tabs hold the part in the frame of its blank when its outline is cut, spread evenly over "
-        "straight, sturdy pieces of it; they are cut off by hand afterwards. 0: none, or as the distance says. They need a blank that is wider than "
-        "the part and the channel around it (blank.side).",
+        "straight, sturdy pieces of it; they are cut off by hand afterwards. 0: none, or as the distance says. They need "
+        "a blank that is wider than the part and the channel around it (blank.side).",
     )
     distance: float = setting(
         0.0,
