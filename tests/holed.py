@@ -15,6 +15,8 @@ from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.feature import FaceRole, Feature, Recognition
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
+from trunnion.pipeline.planning.hole_demands import with_hole_demand
+from trunnion.plan.holes.demand import fit_demand, thread_demand
 
 HIGH = 20.0
 """mm: how thick the plates are."""
@@ -128,18 +130,32 @@ def with_holes(recognition: Recognition, graph: FaceGraph, *holes: dict[str, Any
 
 @cache
 def holed_plate() -> tuple[Engine, Session]:
-    """Return an engine and the session of a plate with holes of every sort, up to its toolpaths; its features are made by hand."""
+    """Return an engine and the session of a plate with holes of every sort, fits and threads in some, up to its toolpaths; its features are
+    made by hand."""
     holes = (
         hole(20, 15, 8),
         hole(80, 15, 8, 10.0),
         hole(20, 45, 9, counterbore_diameter=15, counterbore_depth=6),
         hole(80, 45, 6, countersink_diameter=12, countersink_angle=90),
         hole(50, 30, 7.7),
+        hole(50, 12, 10),
+        hole(50, 48, 9),
+        hole(35, 30, 5),
+        hole(65, 30, 5, 14.0, point_angle=140.0),
     )
+    demands = {
+        "hole-06": fit_demand("H7"),
+        "hole-07": fit_demand("K7"),
+        "hole-08": thread_demand("M6"),
+        "hole-09": thread_demand("M6", 8.0),
+    }
     engine = Engine()
     with TemporaryDirectory() as folder:
         session = engine.open(plate(Path(folder) / "plate.step", *holes))
     session = replace(session, choices={"recognize.family": "panel"})
     session = engine.run(session, until="recognize")
     made = with_holes(session.recognition, engine.context.part.graph(), *holes)
-    return engine, engine.run(replace(session, recognition=made), until="toolpath")
+    session = replace(session, recognition=made)
+    for id, demand in demands.items():
+        session = with_hole_demand(engine, session, [id], demand)
+    return engine, engine.run(session, until="toolpath")
