@@ -99,6 +99,9 @@ FORMS = {
     ),
     "drill": tool_of("drill", diameter=8.0, point_angle=120.0),
     "reamer": tool_of("reamer", diameter=8.0, lead=1.0, fit="H7"),
+    "boring-bar": tool_of(
+        "boring-bar", diameter=9.0, smallest=8.0, lead=0.4, flute_length=4.0, neck_diameter=7.0
+    ),
     "tap": tool_of("tap", diameter=8.0, pitch=1.25, lead=3.0, neck_diameter=6.0),
     # A cone, an arc that bends outwards, a cylinder, and a cone that goes in again.
     "form": tool_of(
@@ -189,7 +192,7 @@ def _cutting(tool):
             (0.0, r),
             0,
         )
-    if tool.form == "reamer":
+    if tool.form in ("reamer", "boring-bar"):
         edge = r - tool.lead
         rows = [(edge, 0.0, 0.0, DOWN, 0.5 * DOWN), (r, tool.lead, 0.0, 0.5 * DOWN, 0.0)]
         return rows, 0.0, top, (edge, r), 0

@@ -9,9 +9,11 @@ import pytest
 
 from trunnion import registry
 from trunnion.findings import BadInput
+from trunnion.model.tool import BUTTON
 from trunnion.shop import load_shop
 from trunnion.verify.cutter import bodies_of
 from trunnion.verify.kernels.body import radius_at
+from verify_tools import FORMS
 
 HOLDER = '["Chuck"]\ntitle = "A chuck"\nrows = [[0, 10, 30, 12]]\n'
 TOOL = """
@@ -62,6 +64,11 @@ def test_the_catalogue_has_cutters_of_every_form():
         "button",
         "form",
     }
+
+
+def test_the_tests_have_a_tool_of_every_form_of_the_catalogue():
+    """What holds of tools of every form is tested on these; a button is a ball to all that cut."""
+    assert {t.form for t in load_shop().tools} - {BUTTON} <= {t.form for t in FORMS.values()}
 
 
 def test_ball_ends_are_for_curved_faces_and_keep_out_of_plane_work():
