@@ -53,6 +53,7 @@ def test_a_fit_typed_on_two_holes_is_one_entry_and_is_undone(recognised, idle):
     found = window.document.shown.recognition
     assert [found.feature(id).attributes["fit"] for id in ids] == ["H7", "H7"]
     assert fields(window).form.values()[FIT] == "H7"
+    assert [window.docks.features.item(id).text(2) for id in ids] == ["10 mm H7"] * 2
     window.registry.run("edit.undo")
     idle(window)
     assert window.document.session is before

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from trunnion.model.feature import FaceRole, Feature
 from trunnion_gui import i18n
 from trunnion_gui.docks.properties import feature_rows
-from trunnion_gui.families.contract import main_size
+from trunnion_gui.families.contract import demanded, main_size
 
 HOLE = Feature(
     id="hole-01",
@@ -26,6 +28,11 @@ HOLE = Feature(
 
 def test_the_main_size_of_a_hole_is_its_diameter():
     assert main_size(HOLE) == "8.5"
+
+
+def test_a_demand_stands_beside_the_size_of_a_hole():
+    threaded = replace(HOLE, attributes={**HOLE.attributes, "thread": "M10"})
+    assert demanded(threaded) == ("M10",) and demanded(HOLE) == ()
 
 
 def test_sizes_of_holes_have_units():

@@ -110,9 +110,10 @@ class FamilyView:
         )
 
     def size(self, feature: Feature) -> str:
-        """Return the most important size of a feature, in mm; empty without one."""
+        """Return the most important size of a feature, in mm, with the fit or the thread that is demanded; empty without one."""
         found = main_size(feature)
-        return f"{found} mm" if found else ""
+        words = (f"{found} mm" if found else "", *demanded(feature))
+        return " ".join(w for w in words if w)
 
     def remark(self, found: Recognition) -> str:
         """Return what is reported after the counts of a recognition."""
@@ -144,6 +145,12 @@ class FamilyView:
 
     def begin(self, window: WindowAccess) -> None:
         """Take up work in a window whose picture is there, before its panels and docks are."""
+
+
+def demanded(feature: Feature) -> tuple[str, ...]:
+    """Return the fit or the thread that is demanded of a feature, as a drawing has it."""
+    given = (feature.attributes.get(name) for name in ("fit", "thread"))
+    return tuple(str(words) for words in given if words)
 
 
 def main_size(feature: Feature, names: Iterable[str] = SIZES) -> str:
