@@ -103,6 +103,19 @@ FORMS = {
         "boring-bar", diameter=9.0, smallest=8.0, lead=0.4, flute_length=4.0, neck_diameter=7.0
     ),
     "tap": tool_of("tap", diameter=8.0, pitch=1.25, lead=3.0, neck_diameter=6.0),
+    "thread mill": tool_of(
+        "thread-mill", diameter=6.0, pitch=1.0, flute_length=9.0, neck_diameter=4.5
+    ),
+    "single tooth": tool_of(
+        "thread-mill",
+        diameter=8.0,
+        pitch_low=1.0,
+        pitch_high=2.0,
+        flute_length=8.0,
+        neck_diameter=5.0,
+        neck_length=40.0,
+        stickout=45.0,
+    ),
     # A cone, an arc that bends outwards, a cylinder, and a cone that goes in again.
     "form": tool_of(
         "form",
@@ -199,6 +212,12 @@ def _cutting(tool):
     if tool.form == "tap":
         # D - 1.082532 P, the basic minor diameter of ISO 68-1.
         core = 0.5 * (tool.diameter - 1.0825317547305484 * tool.pitch)
+        return [(core, 0.0, 0.0, DOWN, 0.0)], 0.0, top, (core, core), 0
+    if tool.form == "thread-mill":
+        # 5/8 H = 0.541266 P; the single tooth goes (P_high - P_low) sqrt(3) / 16 deeper.
+        high = tool.pitch or tool.pitch_high
+        extra = 0.0 if tool.pitch else math.sqrt(3.0) / 16.0 * (high - tool.pitch_low)
+        core = r - 0.5412658773652742 * high - extra
         return [(core, 0.0, 0.0, DOWN, 0.0)], 0.0, top, (core, core), 0
     if tool.form == "form":
         # The outline of FORMS: what a bulge of 0.09 between (4, 2) and (7, 5) is, by its half angle of 2 atan 0.09.

@@ -104,6 +104,25 @@ class TappingTable:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ThreadMillingTable:
+    """What thread mills bear in a group of materials, or in one: `name` is the group's or the material's.
+
+    `speed` vc m/min; `feeds` rows (diameter, feed a tooth at the tip of the teeth) mm; `pass_rows` (coarsest pitch in mm, radial passes).
+    """
+
+    name: str
+    title: str
+    speed: float
+    feeds: tuple[tuple[float, float], ...]
+    pass_rows: tuple[tuple[float, int], ...]
+    source: str
+
+    def passes(self, pitch: float) -> int:
+        """Return in how many radial passes a groove of a pitch (mm) is cut."""
+        return next((n for most, n in self.pass_rows if pitch <= most), self.pass_rows[-1][1])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TurningTable:
     """What inserts bear in a group of materials, or in one: `name` is the group's or the material's.
 

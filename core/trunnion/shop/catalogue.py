@@ -10,7 +10,14 @@ from typing import TypeVar
 
 from trunnion.findings import BadInput
 from trunnion.model.hole_limits import Limits
-from trunnion.model.material import DrillingTable, Machine, Material, TappingTable, TurningTable
+from trunnion.model.material import (
+    DrillingTable,
+    Machine,
+    Material,
+    TappingTable,
+    ThreadMillingTable,
+    TurningTable,
+)
 from trunnion.model.screw_thread import ScrewThread
 from trunnion.model.tool import Tool, TurningTool
 from trunnion.settings import digest
@@ -21,6 +28,7 @@ from trunnion.shop.machines import load_machines
 from trunnion.shop.materials import load_materials
 from trunnion.shop.plans import TypicalPlan, load_plans
 from trunnion.shop.screw_threads import ThreadTables, load_threads
+from trunnion.shop.thread_milling import load_thread_milling
 from trunnion.shop.turning import load_turning, load_turning_data
 
 T = TypeVar("T")
@@ -31,8 +39,8 @@ class Shop:
     """Cutters, materials, machines and typical plans that a plan may choose from; `plans` in their order (`load_plans`).
 
     `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters. `drilling` says by
-    ISO 513 group or by material what drills bear, `reaming`, `boring` and `tapping` what reamers, boring bars and taps do, `turning_data`
-    what inserts do; `fits` and `threads` have the limits of holes and screw threads.
+    ISO 513 group or by material what drills bear, `reaming`, `boring`, `tapping` and `thread_milling` what reamers, boring bars, taps and
+    thread mills do, `turning_data` what inserts do; `fits` and `threads` have the limits of holes and screw threads.
     """
 
     cutters: tuple[Cutter, ...]
@@ -45,6 +53,7 @@ class Shop:
     reaming: Mapping[str, DrillingTable] = field(default_factory=dict)
     boring: Mapping[str, DrillingTable] = field(default_factory=dict)
     tapping: Mapping[str, TappingTable] = field(default_factory=dict)
+    thread_milling: Mapping[str, ThreadMillingTable] = field(default_factory=dict)
     fits: FitTables = field(default_factory=FitTables)
     threads: ThreadTables = field(default_factory=ThreadTables)
 
@@ -68,6 +77,7 @@ class Shop:
             self.reaming,
             self.boring,
             self.tapping,
+            self.thread_milling,
             self.fits,
             self.threads,
         )
@@ -95,6 +105,10 @@ class Shop:
     def tapping_for(self, material: Material) -> TappingTable:
         """Return what taps bear in a material, as `drilling_for` does of drills."""
         return _table_of(self.tapping, material, "tapping")
+
+    def thread_milling_for(self, material: Material) -> ThreadMillingTable:
+        """Return what thread mills bear in a material, as `drilling_for` does of drills."""
+        return _table_of(self.thread_milling, material, "thread_milling")
 
     def fit_limits(self, text: str, diameter: float) -> Limits:
         """Return the limits of a hole of a nominal diameter (mm) by its tolerance class (ISO 286-1, "H7") or by deviations in mm
@@ -140,8 +154,8 @@ def load_shop(user_folder: Path | None = None) -> Shop:
     """Return the catalogues, checked; raise `BadInput` with file, entry and field of the first fault.
 
     `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `reaming`, `boring`,
-    `tapping`, `fits`, `threads`, `machines`, `plans`, each with TOML files) and adds entries or replaces those of the same name. What is
-    missing there is not needed.
+    `tapping`, `thread_milling`, `fits`, `threads`, `machines`, `plans`, each with TOML files) and adds entries or replaces those of the
+    same name. What is missing there is not needed.
     """
     return Shop(
         cutters=load_cutters(load_holders(user_folder), user_folder),
@@ -154,6 +168,7 @@ def load_shop(user_folder: Path | None = None) -> Shop:
         reaming=load_reaming(user_folder),
         boring=load_boring(user_folder),
         tapping=load_tapping(user_folder),
+        thread_milling=load_thread_milling(user_folder),
         fits=load_fits(user_folder),
         threads=load_threads(user_folder),
     )

@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from trunnion.model.tool import BORING_BAR, BUTTON, REAMER, TAP, Holder, Tool
+from trunnion.model.tool import BORING_BAR, BUTTON, REAMER, TAP, THREAD_MILL, Holder, Tool
 from trunnion.shop.reading import CatalogueEntry, by_name, entries
 from trunnion.units import MM_PER_INCH, trimmed
 
@@ -25,6 +25,7 @@ USES = (
     "bore",
     "tap_through",
     "tap_blind",
+    "thread_mill",
     "hole_mill",
     "narrow",
     "interrupted",
@@ -40,10 +41,11 @@ KINDS = (
     REAMER,
     BORING_BAR,
     TAP,
+    THREAD_MILL,
     BUTTON,
     "form",
 )
-_WITHOUT_CORNER = ("drill", REAMER, BORING_BAR, TAP, "form")
+_WITHOUT_CORNER = ("drill", REAMER, BORING_BAR, TAP, THREAD_MILL, "form")
 """Forms whose entries give no corner radius."""
 _USE = {
     "taper": ("surface",),
@@ -52,6 +54,7 @@ _USE = {
     "drill": ("drill",),
     REAMER: ("ream",),
     BORING_BAR: ("bore",),
+    THREAD_MILL: ("thread_mill",),
     BUTTON: ("interrupted",),
 }
 """What a form is for unless its entry says so; that of a tap says which holes it is for."""
@@ -69,9 +72,9 @@ class Cutter:
     """A catalogue cutter with what it is made for: ISO 513 groups and uses.
 
     Uses are `face`, `rough` and `finish` of plane work, `surface` (curved faces), `undercut`, `drill`, `spot`, `countersink`, `ream`,
-    `tap_through` and `tap_blind` (taps for holes that are open below, or that end), `hole_mill` (end mills for small holes), `narrow` (end
-    mills for slots and pockets that no other one gets into) and `interrupted` (turning in the gaps between bosses). An end mill for
-    `hole_mill` or `narrow` alone is taken only where no other serves.
+    `tap_through` and `tap_blind` (taps for holes that are open below, or that end), `thread_mill`, `hole_mill` (end mills for small
+    holes), `narrow` (end mills for slots and pockets that no other one gets into) and `interrupted` (turning in the gaps between bosses).
+    An end mill for `hole_mill` or `narrow` alone is taken only where no other serves.
     """
 
     tool: Tool
@@ -92,8 +95,9 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
     A file of tools holds `[tool.NAME]` tables of one cutter each and `[series.NAME]` tables whose `sizes` give one cutter for each
     diameter and corner radius, named `SERIES D12 R3` and what else its form needs: a taper's angle (A3), a barrel's radius (B85), how
     thick a T-slot cutter is (H6); a drill is `SERIES D8.5`, a reamer `SERIES D8`. A tap is named by its thread, `SERIES M6x1`, or
-    `SERIES UNC 1/4-20` where its size says `thread = "1/4-20 UNC"`, a boring bar by its range, `SERIES D20-26`. `form`
-    is one of `KINDS`. A user's series or tool replaces the program's of the same name.
+    `SERIES UNC 1/4-20` where its size says `thread = "1/4-20 UNC"`, a thread mill by its diameter and pitch, `SERIES D6x1`, or by its
+    range, `SERIES D12 P1-2.5`, a boring bar by its range, `SERIES D20-26`. `form` is one of `KINDS`. A user's series or tool replaces the
+    program's of the same name.
     """
     found: list[tuple[int, CatalogueEntry]] = []
     for layer, group in entries("tools", user_folder):
@@ -185,6 +189,7 @@ def _size_name(tool: Tool) -> str:
         "barrel": f"{corner} B{trimmed(tool.barrel_radius, 3)}",
         "t-slot": f"{corner} H{trimmed(tool.flute_length, 3)}",
         **dict.fromkeys(_WITHOUT_CORNER, ""),
+        THREAD_MILL: _pitch_name(tool),
     }.get(tool.form, corner)
 
 
@@ -196,6 +201,13 @@ def _full_name(series: str, size: CatalogueEntry, tool: Tool) -> str:
     if tool.form == BORING_BAR:
         return f"{series} D{trimmed(tool.smallest, 3)}-{trimmed(tool.diameter, 3)}"
     return tool.name + _size_name(tool)
+
+
+def _pitch_name(tool: Tool) -> str:
+    """Return what distinguishes a thread mill from others of its diameter: its pitch, or the range of it."""
+    if tool.pitch > 0.0:
+        return f"x{trimmed(tool.pitch, 3)}"
+    return f" P{trimmed(tool.pitch_low, 3)}-{trimmed(tool.pitch_high, 3)}"
 
 
 def _thread_name(size: CatalogueEntry, tool: Tool) -> str:
@@ -288,6 +300,8 @@ def _shape(series: CatalogueEntry, size: CatalogueEntry, kind: str) -> dict[str,
         }
     if kind == TAP:
         return _tap_shape(series, size)
+    if kind == THREAD_MILL:
+        return _thread_mill_shape(size)
     if kind == "form":
         return {"outline": size.rows("outline", 3, -1.0, _LARGEST)}
     return {}
@@ -295,18 +309,31 @@ def _shape(series: CatalogueEntry, size: CatalogueEntry, kind: str) -> dict[str,
 
 def _tap_shape(series: CatalogueEntry, size: CatalogueEntry) -> dict[str, Any]:
     """Return pitch and lead of a tap: the pitch in mm or as threads per inch, the lead in mm or as so many threads."""
-    if size.has("threads_per_inch") == size.has("pitch"):
-        raise size.wrong("a tap gives its pitch, either as pitch in mm or as threads_per_inch")
-    pitch = (
-        MM_PER_INCH / size.number("threads_per_inch", 1.0, _MOST_PER_INCH)
-        if size.has("threads_per_inch")
-        else size.number("pitch", 0.0, _LARGEST)
-    )
+    pitch = _pitch(size, "tap")
     given = _given(series, size, "lead")
     if given.has("lead"):
         return {"pitch": pitch, "lead": given.number("lead", 0.0, _LARGEST)}
     threads = _given(series, size, "lead_threads").number("lead_threads", 0.0, _MOST_LEAD_THREADS)
     return {"pitch": pitch, "lead": threads * pitch}
+
+
+def _thread_mill_shape(size: CatalogueEntry) -> dict[str, Any]:
+    """Return the pitch of a thread mill's comb, or the range of pitches that its single tooth cuts."""
+    if size.has("pitch_low") or size.has("pitch_high"):
+        return {
+            "pitch_low": size.number("pitch_low", 0.0, _LARGEST),
+            "pitch_high": size.number("pitch_high", 0.0, _LARGEST),
+        }
+    return {"pitch": _pitch(size, "thread mill")}
+
+
+def _pitch(size: CatalogueEntry, kind: str) -> float:
+    """Return the pitch of a tool of a kind in mm, which an entry gives in mm or as threads per inch."""
+    if size.has("threads_per_inch") == size.has("pitch"):
+        raise size.wrong(f"a {kind} gives its pitch, either as pitch in mm or as threads_per_inch")
+    if size.has("threads_per_inch"):
+        return MM_PER_INCH / size.number("threads_per_inch", 1.0, _MOST_PER_INCH)
+    return size.number("pitch", 0.0, _LARGEST)
 
 
 def _given(series: CatalogueEntry, size: CatalogueEntry, field: str) -> CatalogueEntry:

@@ -147,6 +147,11 @@ def _spans_of(tool: Tool) -> list[Span]:
         # Its threads lie outside of the core; the bore that it follows is at least as wide as that.
         core = 0.5 * (tool.diameter - 1.25 * math.sqrt(0.75) * tool.pitch)
         return [*_end_face(core), _line(core, 0.0, core, top)]
+    if tool.form == "thread-mill":
+        # The cylinder inside its teeth; a single tooth has the flat of its finest pitch and reaches out farther for the coarsest.
+        low, high = (tool.pitch, tool.pitch) if tool.pitch else (tool.pitch_low, tool.pitch_high)
+        core = 0.5 * tool.diameter - math.sqrt(0.75) * (0.625 * high + 0.125 * (high - low))
+        return [*_end_face(core), _line(core, 0.0, core, top)]
     if tool.form == "form":
         return _from_rows(tool.outline)
     return [*_end_face(r - c), *_arc(r - c, 0.0, r, c, r - c, c, c), _line(r, c, r, top)]

@@ -12,7 +12,7 @@ from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.model.motion.program import NO_STANCES, ProgramSection, Stance
 from trunnion.model.motion.toolpath import Motion
-from trunnion.model.tool import Tool
+from trunnion.model.tool import THREAD_MILL, Tool
 from trunnion.verify.cutter import Bodies, bodies_of, bodies_of_one
 from trunnion.verify.kernels.contact.strips import (
     COS_HALF,
@@ -165,7 +165,9 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         rapid.append(path.motion == Motion.RAPID)
         feeds.append(path.feed)
         lengths.append(length)
-        tool_row.append(np.full(n, tools.setdefault(section.cutter, len(tools))))
+        fed = tools.setdefault(section.cutter, len(tools))
+        in_rapids = tools.setdefault(_in_rapids(section.cutter), len(tools))
+        tool_row.append(np.where(rapid[-1], in_rapids, fed))
     first, last = _points(start_axes), _points(end_axes)
     return Moves(
         start=_points(starts),
@@ -186,6 +188,13 @@ def moves_of(sections: Sequence[ProgramSection]) -> Moves:
         tool=_ints(tool_row),
         stances=stances,
     )
+
+
+def _in_rapids(tool: Tool) -> Tool:
+    """Return what a tool is taken for in rapids: a thread mill for a plain cylinder as thick as its teeth; others are as they are."""
+    if tool.form != THREAD_MILL:
+        return tool
+    return replace(tool, form="flat", pitch=0.0, pitch_low=0.0, pitch_high=0.0)
 
 
 def seen_from(moves: Moves, frame: Frame, other: Frame) -> Moves:

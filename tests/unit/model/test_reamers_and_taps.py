@@ -93,7 +93,7 @@ def test_a_shank_as_thick_as_a_tap_does_not_follow_it_into_the_hole():
         (
             TOOLS["DR-K D8"],
             {"lead": 1.0},
-            "those of reamers, boring bars and taps, not of the form drill",
+            "of tools for threads and fits, not of the form drill",
         ),
         (TAP, {"neck_diameter": 5.0}, "no thicker than the core, 4.917 mm"),
     ],

@@ -61,6 +61,7 @@ def test_the_catalogue_has_cutters_of_every_form():
         "reamer",
         "boring-bar",
         "tap",
+        "thread-mill",
         "button",
         "form",
     }
@@ -304,7 +305,7 @@ def test_a_user_without_a_folder_gets_the_programs_own(tmp_path):
         (
             "teeth = 3",
             'teeth = 3\nform = "saw"',
-            "form knows end mill, taper, barrel, t-slot, drill, reamer, boring-bar, tap, button, form; got 'saw'",
+            "form knows end mill, taper, barrel, t-slot, drill, reamer, boring-bar, tap, thread-mill, button, form; got 'saw'",
         ),
         ("teeth = 3", 'teeth = 3\nform = "taper"', "taper_angle is missing"),
         (

@@ -557,7 +557,11 @@ def test_a_rapid_straight_up_is_seen_in_what_a_t_slot_cutter_has_left_over_its_s
     assert run.rapid_depth[:3].max() == 0.0 and run.rapid_depth[3] > 1.0
 
 
-@pytest.mark.parametrize("form", sorted(set(FORMS) - {"t-slot"}))
+THREAD_MILLS = {"thread mill", "single tooth"}
+"""In rapids they are as thick as their teeth."""
+
+
+@pytest.mark.parametrize("form", sorted(set(FORMS) - {"t-slot"} - THREAD_MILLS))
 def test_a_rapid_straight_up_out_of_what_was_just_plunged_is_clear(form):
     section = _rapid_at_the_end(
         program_section(FORMS[form], [(20.1, 16.2, 60.0), (20.1, 16.2, 13.0), (20.1, 16.2, 60.0)])
@@ -565,6 +569,17 @@ def test_a_rapid_straight_up_out_of_what_was_just_plunged_is_clear(form):
     moves = moves_of([section])
     run = run_stock(whole(0.5), moves, WORLD, Sweep.of(moves, 2.0))
     assert run.rapid_depth.max() == 0.0 and run.body_depth.max() <= tolerance.CONTACT_BOUND
+
+
+@pytest.mark.parametrize("form", sorted(THREAD_MILLS))
+def test_a_rapid_straight_up_is_seen_where_a_thread_mills_teeth_are_in_what_its_core_has_left(form):
+    section = _rapid_at_the_end(
+        program_section(FORMS[form], [(20.1, 16.2, 60.0), (20.1, 16.2, 13.0), (20.1, 16.2, 60.0)])
+    )
+    moves = moves_of([section])
+    run = run_stock(whole(0.5), moves, WORLD, Sweep.of(moves, 2.0))
+    teeth = FORMS[form].radius - FORMS[form].core_radius
+    assert run.rapid_depth[-1] == approx(teeth, abs=1e-6)
 
 
 def _rapid_at_the_end(section):

@@ -13,6 +13,7 @@ from trunnion.model.tool.rotating import BUTTON as BUTTON
 from trunnion.model.tool.rotating import FORMS as FORMS
 from trunnion.model.tool.rotating import PLAIN_FORMS as PLAIN_FORMS
 from trunnion.model.tool.rotating import Tool as Tool
+from trunnion.model.tool.thread_mill import THREAD_MILL as THREAD_MILL
 
 AnyTool = Tool | TurningTool
 """A tool that an operation may hold: one that rotates, or one that stands still while the work turns."""

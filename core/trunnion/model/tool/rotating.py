@@ -22,6 +22,7 @@ from trunnion.model.tool.lead import (
     wrong_tap,
 )
 from trunnion.model.tool.mill import MILLS
+from trunnion.model.tool.thread_mill import THREAD_MILL, mill_core, wrong_thread_mill
 from trunnion.settings import added
 
 CHECKS: Mapping[str, Callable[[Tool], str]] = {
@@ -30,6 +31,7 @@ CHECKS: Mapping[str, Callable[[Tool], str]] = {
     REAMER: wrong_reamer,
     BORING_BAR: wrong_boring_bar,
     TAP: wrong_tap,
+    THREAD_MILL: wrong_thread_mill,
 }
 """What the numbers of each form lack, in words, or nothing."""
 FORMS = tuple(CHECKS)
@@ -59,6 +61,8 @@ class Tool:
       cylinder with a `lead` as a reamer is. Once set, `fit` is what it is set for.
     - tap: a thread of the nominal `diameter` and of `pitch` (mm), whose lowest threads are chamfered over the height `lead`. What it is
       taken to cut is the cylinder of its `core_diameter`: in a bore of that size it takes nothing off.
+    - thread-mill: thread teeth of `diameter` over a height of `flute_length`: a comb of one `pitch` (mm), or (pitch 0) a single tooth that
+      cuts pitches from `pitch_low` to `pitch_high`. What it is taken to cut is the cylinder of its core, inside its teeth.
     - button: a round turning insert of `diameter` in a neutral holder, which the locked spindle holds while the table brings the work past:
       what is kept clear of it, and what it is taken to cut, is a ball end of `diameter`.
     - form: `outline`, points (r, z, bulge) from the tip to the top of the flutes; the bulge (tan of a quarter of the arc's angle, positive
@@ -89,6 +93,8 @@ class Tool:
     lead: float = added(0.0, written=False)
     fit: str = added("", written=False)
     smallest: float = added(0.0, written=False)
+    pitch_low: float = added(0.0, written=False)
+    pitch_high: float = added(0.0, written=False)
 
     def __post_init__(self) -> None:
         if self.form not in FORMS:
@@ -101,12 +107,16 @@ class Tool:
             raise ValueError(
                 f"tool {self.name}: flute, neck, stickout and gauge length must grow in this order"
             )
-        if self.form not in (*FINISHING, TAP) and (self.pitch or self.lead or self.fit):
+        if self.form not in (*FINISHING, TAP, THREAD_MILL) and (
+            self.pitch or self.lead or self.fit
+        ):
             raise ValueError(
-                f"tool {self.name}: pitch, lead and fit are those of reamers, boring bars and taps, not of the form {self.form}"
+                f"tool {self.name}: pitch, lead and fit are of tools for threads and fits, not of the form {self.form}"
             )
         if self.smallest and self.form != BORING_BAR:
             raise ValueError(f"tool {self.name}: only boring bars have a smallest diameter")
+        if self.form != THREAD_MILL and (self.pitch_low or self.pitch_high):
+            raise ValueError(f"tool {self.name}: only thread mills have a range of pitches")
         wrong = CHECKS[self.form](self)
         if wrong:
             raise ValueError(f"tool {self.name}: {wrong}")
@@ -125,6 +135,11 @@ class Tool:
     def locked(self) -> bool:
         """Whether the spindle that holds it stands still."""
         return self.form == BUTTON
+
+    @property
+    def cuts_threads(self) -> bool:
+        """Whether it cuts a thread: its core alone is taken to take anything off."""
+        return self.form in (TAP, THREAD_MILL)
 
     @property
     def point_length(self) -> float:
@@ -158,9 +173,12 @@ class Tool:
 
     @property
     def core_diameter(self) -> float:
-        """Diameter of what the tool is taken to cut: of a tap the basic minor diameter of its thread, of others their diameter."""
+        """Diameter of what the tool is taken to cut: of a tap the basic minor diameter of its thread, of a thread mill what is inside its
+        teeth, of others their diameter."""
         if self.form == TAP:
             return basic_minor_diameter(self.diameter, self.pitch)
+        if self.form == THREAD_MILL:
+            return mill_core(self)
         return self.diameter
 
     @property
@@ -237,11 +255,11 @@ class Tool:
         )
 
     def header_sizes(self) -> tuple[tuple[str, float], ...]:
-        """Return the lengths mm that a program's header names, each with the word before it: of a tap its pitch in the place of a corner
-        radius."""
+        """Return the lengths mm that a program's header names, each with the word before it: of a tap and of a thread mill's comb its
+        pitch in the place of a corner radius."""
         return (
             ("D", self.diameter),
-            ("PITCH ", self.pitch) if self.form == TAP else ("R", self.corner_radius),
+            ("PITCH ", self.pitch) if self.pitch else ("R", self.corner_radius),
             ("LENGTH ", self.gauge_length),
             ("STICKOUT ", self.stickout),
         )
@@ -252,12 +270,14 @@ class Tool:
         return self.holder.name
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the tool as `NAME.tools.json` has it; pitch, lead, fit and smallest diameter stand there where it has them."""
+        """Return the tool as `NAME.tools.json` has it; what only forms for threads and fits have stands there where it is given."""
         shape = {
             "pitch": self.pitch,
             "lead": self.lead,
             "fit": self.fit,
             "smallest": self.smallest,
+            "pitch_low": self.pitch_low,
+            "pitch_high": self.pitch_high,
         }
         return {
             "number": self.number,

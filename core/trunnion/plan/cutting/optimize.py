@@ -11,8 +11,7 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.tool import TurningTool
-from trunnion.plan.cutting.axial import axial_data
-from trunnion.plan.cutting.drilling import AXIAL
+from trunnion.plan.cutting.axial import TABLE_FORMS, TABLE_KINDS, table_data
 from trunnion.plan.cutting.milling import (
     ROUGHING,
     CuttingSettings,
@@ -30,7 +29,6 @@ from trunnion.plan.cutting.optimization.operation import (
 from trunnion.plan.cutting.optimization.problem import CuttingProblem, Optimum
 from trunnion.plan.cutting.optimization.settings import OPTIMISED
 from trunnion.plan.cutting.peak import is_overload, with_peak
-from trunnion.plan.cutting.power import AXIAL_FORMS
 from trunnion.plan.cutting.turning import TURNING_FINISH, turning_data
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value, choose, declared
@@ -175,8 +173,8 @@ def recomputed(
     if operation.kind in ROUGHING and operation.kind != "face":
         depth = min(depth, _bears(operation, depth, material, settings))
         width = min(width, roughing_width(operation.cutter, material, settings))
-    if operation.kind in AXIAL or operation.cutter.form in AXIAL_FORMS:
-        data = axial_data(operation.kind, operation.cutter, material, machine, shop, settings)
+    if operation.kind in TABLE_KINDS or operation.cutter.form in TABLE_FORMS:
+        data = table_data(operation.kind, operation.cutter, material, machine, shop, settings)
         return replace(operation, data=data)
     data = cutting_data(
         operation.cutter,

@@ -1,4 +1,4 @@
-"""The cutting data that operations on holes begin with: drilled, reamed and tapped by their tables, milled by
+"""The cutting data that operations on holes begin with: drilled, reamed, tapped and thread milled by their tables, bores milled by
 helices."""
 
 from __future__ import annotations
@@ -6,10 +6,8 @@ from __future__ import annotations
 from trunnion.model.material import Machine, Material
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.axial import axial_data
-from trunnion.plan.cutting.drilling import AXIAL
+from trunnion.plan.cutting.axial import TABLE_FORMS, TABLE_KINDS, table_data
 from trunnion.plan.cutting.milling import CuttingSettings, cutting_data, roughing_width
-from trunnion.plan.cutting.power import AXIAL_FORMS
 from trunnion.plan.holes.drive import BORE, COUNTERBORE, FLOOR
 from trunnion.shop import Shop
 
@@ -21,7 +19,7 @@ HELIX_DEPTH = 0.2
 
 def is_on_holes(kind: str, tool: Tool) -> bool:
     """Return whether the data of an operation of a kind are those of `hole_data`."""
-    return kind in (*AXIAL, *HOLE_MILLING) or tool.form in AXIAL_FORMS
+    return kind in (*TABLE_KINDS, *HOLE_MILLING) or tool.form in TABLE_FORMS
 
 
 def hole_data(
@@ -32,8 +30,9 @@ def hole_data(
     shop: Shop,
     settings: CuttingSettings,
 ) -> CuttingData:
-    """Return the data of an operation of a kind on holes: each turn of a helix takes a slice, ring by ring from the middle outwards."""
-    if kind in AXIAL or tool.form in AXIAL_FORMS:
-        return axial_data(kind, tool, material, machine, shop, settings)
+    """Return the data of an operation of a kind on holes: in a bore each turn of a helix takes a slice, ring by ring from the middle
+    outwards."""
+    if kind in TABLE_KINDS or tool.form in TABLE_FORMS:
+        return table_data(kind, tool, material, machine, shop, settings)
     depth, width = HELIX_DEPTH * tool.diameter, roughing_width(tool, material, settings)
     return cutting_data(tool, material, machine, kind, settings, depth, width)

@@ -32,7 +32,7 @@ from trunnion.shop import Stage
 
 NOT_REACHED = "hole.not-reached"
 """Code of the finding on a hole that the setup's tool axis does not reach."""
-SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, FINE_BORE, COUNTERSINK, TAP = (
+SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, FINE_BORE, COUNTERSINK, TAP, MILL_THREAD = (
     "spot",
     "drill",
     "hole_mill",
@@ -42,9 +42,14 @@ SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, FINE_BORE, COUNTERSINK, TAP = (
     "fine_bore",
     "countersink",
     "tap",
+    "thread_mill",
 )
 """Kinds of operations on holes."""
-KINDS = (SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, FINE_BORE, COUNTERSINK, TAP)
+KINDS = (SPOT, DRILL, BORE, FLOOR, COUNTERBORE, REAM, FINE_BORE, COUNTERSINK, TAP, MILL_THREAD)
+THREADING = (TAP, MILL_THREAD)
+"""Kinds of operations that cut the thread of a bore."""
+FINISHING_KINDS = (REAM, FINE_BORE, *THREADING)
+"""Kinds of operations on a bore that is made already."""
 OVERLAP = 0.5
 """mm that a floor's cutter begins above what the drill's point has left."""
 
@@ -67,6 +72,13 @@ class HoleDrive:
     def is_empty(self) -> bool:
         """Whether there is no hole to cut."""
         return not self.holes
+
+    @property
+    def threaded(self) -> tuple[tuple[PlannedHole, HoleThread | None], ...]:
+        """The holes, each with the thread that is cut into it, None where none is demanded: it may be driven by an operation of another
+        kind."""
+        threads: Sequence[HoleThread | None] = self.threads or (None,) * len(self.holes)
+        return tuple(zip(self.holes, threads, strict=True))
 
     def guides(self, space: GuideSpace) -> tuple[GuideCurve, ...]:
         """Return the holes' axes, as deep as their full diameters."""
@@ -120,7 +132,7 @@ def hole_drive(
         holes += parts
         if operation.kind == COUNTERSINK and shape.countersink is not None:
             sinks.append(shape.countersink)
-        if operation.kind == TAP and shape.thread is not None:
+        if operation.kind in THREADING and shape.thread is not None:
             threads.append(shape.thread)
     if operation.own_faces:
         own = [bool(set(h.faces) & set(operation.faces)) for h in holes]
@@ -147,13 +159,23 @@ def not_reached(feature: Feature, reason: str) -> Finding:
     )
 
 
+def no_thread(hole: PlannedHole) -> Finding:
+    """Return the finding on a hole whose thread is to be cut, but in which none is demanded."""
+    return warning(
+        "hole.no-thread",
+        f"{hole.feature}: no thread is demanded in it",
+        hole.feature,
+        remedy="name its thread, or take another strategy",
+    )
+
+
 def no_tool(
     stage: Stage, features: Sequence[Feature], faces: Iterable[int], missing: Candidates
 ) -> Finding:
     """Return the finding that no tool of the catalogue fits what a stage cuts of some holes: an error, but a warning for what is done to a
     bore that is made: its flat floor, over which the drill leaves its point, its fit, its thread."""
     names = ", ".join(f.id for f in features)
-    return (warning if stage.kind in (FLOOR, REAM, FINE_BORE, TAP) else error)(
+    return (warning if stage.kind in (FLOOR, *FINISHING_KINDS) else error)(
         "route.no-cutter",
         f"{names}: {missing.reason} ({stage.name})",
         *(f.id for f in features),
@@ -174,11 +196,11 @@ def _parts(operation: Operation, shape: HoleShape, process: ProcessTree) -> tupl
         return shape.counterbores
     if operation.kind == COUNTERSINK and shape.countersink is None:
         raise Refused(f"{shape.bore.feature}: it has no countersink; correct the feature")
-    if operation.kind == TAP and shape.thread is None:
+    if operation.kind in THREADING and shape.thread is None:
         raise Refused(
             f"{shape.bore.feature}: no thread is demanded in it; name its thread, or delete the operation"
         )
-    if operation.kind in (REAM, FINE_BORE, TAP):
+    if operation.kind in FINISHING_KINDS:
         return (shape.narrow,)
     if operation.kind == FLOOR:
         drilled = _drilled_by(operation, shape.bore.feature, process)

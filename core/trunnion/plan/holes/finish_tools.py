@@ -17,6 +17,7 @@ from trunnion.plan.holes.settings import (
     HoleSettings,
     ReamSettings,
     TapSettings,
+    ThreadMillSettings,
 )
 from trunnion.plan.holes.tools import HoleSpace, either
 from trunnion.plan.tool_choice import Candidates
@@ -46,6 +47,7 @@ class FinishSettings:
     reaming: ReamSettings
     boring: FineBoringSettings
     tapping: TapSettings
+    thread_milling: ThreadMillSettings
 
     @staticmethod
     def of(choices: Mapping[str, Value]) -> FinishSettings:
@@ -54,6 +56,7 @@ class FinishSettings:
             reaming=choose(ReamSettings, choices),
             boring=choose(FineBoringSettings, choices),
             tapping=choose(TapSettings, choices),
+            thread_milling=choose(ThreadMillSettings, choices),
         )
 
 

@@ -24,6 +24,7 @@ from trunnion.plan.holes.drive import (
     DRILL,
     FINE_BORE,
     FLOOR,
+    MILL_THREAD,
     REAM,
     SPOT,
     TAP,
@@ -49,6 +50,7 @@ from trunnion.plan.holes.settings import (
     DrillSettings,
     HoleSettings,
 )
+from trunnion.plan.holes.thread_mills import threaded
 from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups.frames import Direction, cutting_setup
@@ -148,6 +150,9 @@ class _Planning:
             self.finishing,
             state.material,
             state.shop,
+        )
+        finish = threaded(
+            finish, shape, state.cutters, around, self.settings, self.finishing.thread_milling
         )
         before = shape.bore if finish is None else finish.before
         hole = SetupHole(
@@ -322,7 +327,7 @@ def _sunk(hole: SetupHole) -> Made:
 
 
 def _finished(kind: str) -> Callable[[SetupHole], Made]:
-    """Return the rule of reaming, boring or tapping: the bore whose demand asks for it."""
+    """Return the rule of reaming, boring or threading: the bore whose demand asks for it."""
 
     def rule(hole: SetupHole) -> Made:
         if hole.finish is None or hole.finish.kind != kind:
@@ -343,5 +348,6 @@ RULES: dict[str, Callable[[SetupHole], Made]] = {
     REAM: _finished(REAM),
     FINE_BORE: _finished(FINE_BORE),
     TAP: _finished(TAP),
+    MILL_THREAD: _finished(MILL_THREAD),
 }
 """What a stage of a kind cuts of a hole, with the tools for it."""

@@ -1,4 +1,4 @@
-"""What a shop may choose about holes: how drills, reamers and taps go down, which drill counts as a hole's own,
+"""What a shop may choose about holes: how drills, reamers, taps and thread mills go down, which drill counts as a hole's own,
 and what may be demanded of a hole."""
 
 from __future__ import annotations
@@ -7,6 +7,8 @@ from trunnion.settings import setting, settings
 
 MILL_ALLOWANCE = "hole.mill.allowance"
 """Key of an operation's choice that holds what a milled bore keeps on its side for the reamer, mm."""
+WHERE_NO_TAP, ALWAYS = "no-tap", "always"
+"""When threads are milled: where no tap of the catalogue serves, or always."""
 
 
 @settings("hole.drill")
@@ -145,6 +147,28 @@ class TapSettings:
     )
 
 
+@settings("hole.thread_mill")
+class ThreadMillSettings:
+    """How threads are milled. Speed, feed and depth of a radial pass come with the cutting data."""
+
+    bottom_distance: float = setting(
+        0.5,
+        unit="mm",
+        low=0.0,
+        high=20.0,
+        label="Distance to the bottom",
+        help="How far a thread mill stays over the end of a blind bore's full diameter: space for chips.",
+    )
+    safety: float = setting(
+        2.0,
+        unit="mm",
+        low=0.2,
+        high=50.0,
+        label="Safety distance",
+        help="Where a rapid ends above what may still be there.",
+    )
+
+
 @settings("hole.demand")
 class HoleDemand:
     """What a person may demand of a hole; empty words demand nothing."""
@@ -186,6 +210,12 @@ class HoleSettings:
         label="Spot holes",
         help="Whether holes are spotted before they are drilled. Short solid carbide drills need none.",
     )
+    thread_milling: str = setting(
+        WHERE_NO_TAP,
+        choices=(WHERE_NO_TAP, ALWAYS),
+        label="Mill threads",
+        help="Whether threads are milled only where no tap of the catalogue serves, or always.",
+    )
 
 
 HOLE_SETTINGS: tuple[type, ...] = (
@@ -194,5 +224,6 @@ HOLE_SETTINGS: tuple[type, ...] = (
     ReamSettings,
     FineBoringSettings,
     TapSettings,
+    ThreadMillSettings,
 )
 """Groups of settings that planning of holes reads."""

@@ -9,7 +9,15 @@ from trunnion.findings import Refused
 from trunnion.geometry.plane.region import EMPTY_REGION
 from trunnion.model.feature import Feature
 from trunnion.model.tool import Tool
-from trunnion.plan.holes.drive import FINE_BORE, REAM, TAP, no_tool, not_reached
+from trunnion.plan.holes.drive import (
+    FINE_BORE,
+    MILL_THREAD,
+    REAM,
+    TAP,
+    THREADING,
+    no_tool,
+    not_reached,
+)
 from trunnion.plan.holes.finish_tools import (
     BoreFinish,
     FinishSettings,
@@ -28,6 +36,7 @@ from trunnion.plan.holes.settings import (
     DrillSettings,
     HoleSettings,
 )
+from trunnion.plan.holes.thread_mills import threaded
 from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
@@ -94,14 +103,27 @@ def hole_reach(state: PanelPlanState, feature: Feature, half: bool = False) -> H
             )
         if half:
             shape = nearer_half(shape)
+
+        def tools_of(use: str) -> Sequence[Tool]:
+            return state.shop.tools_for(state.material.iso_group, use)
+
+        finishing = FinishSettings.of(state.choices)
         finish = bore_finish(
             feature,
             shape,
-            lambda use: state.shop.tools_for(state.material.iso_group, use),
+            tools_of,
             known.around,
-            FinishSettings.of(state.choices),
+            finishing,
             state.material,
             state.shop,
+        )
+        finish = threaded(
+            finish,
+            shape,
+            tools_of,
+            known.around,
+            known.settings,
+            finishing.thread_milling,
         )
         before = shape.bore if finish is None else finish.before
         drills = drills_for(
@@ -261,7 +283,7 @@ def _milled(
 def _bored_faces(known: HolePlanning, feature: Feature) -> tuple[int, ...] | None:
     """Return the faces that making a bore finishes, None: all of its own; of one that is reamed after it not its side."""
     finish = known.finishes.get(feature.id)
-    if finish is None or finish.kind == TAP or not finish.found.tools:
+    if finish is None or finish.kind in THREADING or not finish.found.tools:
         return None
     return feature.with_role("bottom")
 
@@ -269,7 +291,7 @@ def _bored_faces(known: HolePlanning, feature: Feature) -> tuple[int, ...] | Non
 def _finish_tasks(
     state: PanelPlanState, stage: Stage, features: Sequence[Feature]
 ) -> list[OperationTask]:
-    """Ask for the reaming, boring or tapping of bores that a stage is for."""
+    """Ask for the reaming, boring or threading of bores that a stage is for."""
     known = _planning(state, stage, features)
     fitted = [
         HoleFit(
@@ -455,5 +477,6 @@ HOLE_TASK_MAKERS: Mapping[
     REAM: _finish_tasks,
     FINE_BORE: _finish_tasks,
     TAP: _finish_tasks,
+    MILL_THREAD: _finish_tasks,
 }
 """The rule behind each word that a typical plan gives for the tool of a stage on holes."""

@@ -12,12 +12,12 @@ from trunnion import tolerance
 from trunnion.findings import Fix
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.model.tool import BUTTON, FINISHING, TAP, Tool
+from trunnion.model.tool import BUTTON, FINISHING, TAP, THREAD_MILL, Tool
 from trunnion.plan.freeform.keys import EARLIER
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.tool_choice import depth_reached
 
-SHAPES = ("drill", *FINISHING, TAP, "form", BUTTON)
+SHAPES = ("drill", *FINISHING, TAP, THREAD_MILL, "form", BUTTON)
 """Forms that leave their own shape in the part, whatever they cut."""
 MARGIN = 0.5
 """mm that a tool has to reach farther than what was measured."""
@@ -75,7 +75,16 @@ def next_tool(
 
 def own_shape(tool: Tool) -> tuple[object, ...]:
     """Return what of a tool stays in the part where its form is one of `SHAPES`."""
-    return (tool.form, tool.diameter, tool.point_angle, tool.outline, tool.pitch, tool.fit)
+    return (
+        tool.form,
+        tool.diameter,
+        tool.point_angle,
+        tool.outline,
+        tool.pitch,
+        tool.pitch_low,
+        tool.pitch_high,
+        tool.fit,
+    )
 
 
 def _same_foot(tool: Tool, now: Tool, finishes: bool) -> bool:

@@ -11,7 +11,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.spindle import per_minute
 from trunnion.model.tool import Tool
-from trunnion.plan.holes.drive import HoleDrive
+from trunnion.plan.holes.drive import HoleDrive, no_thread
 from trunnion.plan.holes.finish_tools import is_tap_of, tap_tip, thread_end
 from trunnion.plan.holes.hole import HoleThread, PlannedHole
 from trunnion.plan.holes.settings import TapSettings
@@ -39,7 +39,10 @@ def tap(
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
     cycles: list[HoleCycle] = []
     findings: list[Finding] = []
-    for hole, thread in progress.each(list(zip(drive.holes, drive.threads, strict=True))):
+    for hole, thread in progress.each(drive.threaded):
+        if thread is None:
+            findings.append(no_thread(hole))
+            continue
         tip = tap_tip(hole, thread, tool, settings)
         stopped = _of_another_thread(hole, thread, tool) or kept_off(builder, hole, tip)
         if stopped is not None:

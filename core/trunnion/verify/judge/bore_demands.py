@@ -23,6 +23,7 @@ from trunnion.model.spindle import per_minute
 from trunnion.model.tool import BORING_BAR, FINISHING, Tool
 from trunnion.units import trimmed
 from trunnion.verify.judge.locations import block_of, position_text
+from trunnion.verify.judge.milled_threads import milled_threads
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.settings import ProofSettings
 
@@ -64,10 +65,9 @@ class ToolStroke:
 def demand_findings(
     proofs: Sequence[SetupProof], demands: Sequence[BoreDemand], settings: ProofSettings
 ) -> list[Finding]:
-    """Return errors on strokes of taps that cut no thread that is demanded, or not as it must be, and warnings on bores whose thread or fit
-    nothing makes, or not all of it."""
-    found: list[Finding] = []
-    best: dict[str, float] = {}
+    """Return errors on strokes of taps, and feeds of thread mills, that cut no thread that is demanded, or not as it must be, and warnings
+    on bores whose thread or fit nothing makes, or not all of it."""
+    found, best = milled_threads(proofs, demands, settings)
     for stroke in (s for proof in proofs for s in _strokes(proof)):
         bore = next((d for d in demands if stroke.goes_along(d, settings.tolerance)), None)
         wrong = _wrong(stroke, bore, settings) if stroke.tool.form == "tap" else []

@@ -280,6 +280,9 @@ def _air(
     if section.tool.locked:
         # The table turns on: the way over what stands between gaps is part of the work.
         return [], []
+    if section.cutter.cuts_threads:
+        # What it takes off is not the stock's: a thread stands in the wall of its bore.
+        return [], []
     air = proof.stock.removed[rows] <= 0.0
     length, seconds = proof.moves.length[rows], proof.times.seconds[rows]
     run, wasted = float(length.sum()), float(seconds[air].sum())

@@ -116,7 +116,7 @@ def cutter_outline(tool: Tool) -> Outline:
         return [(0.0, 0.0), (r, tool.point_length), (r, top)]
     if tool.form in FINISHING:
         return [(0.0, 0.0), (r - tool.lead, 0.0), (r, tool.lead), (r, top)]
-    if tool.form == "tap":
+    if tool.form in ("tap", "thread-mill"):
         return [(0.0, 0.0), (tool.core_radius, 0.0), (tool.core_radius, top)]
     if tool.form == "t-slot":
         return [

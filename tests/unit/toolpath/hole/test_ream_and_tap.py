@@ -119,6 +119,13 @@ def test_a_thread_that_ends_too_high_is_told():
     assert told.code == "hole.thread-depth" and "8.5 of 11 mm" in told.text
 
 
+def test_a_hole_without_a_thread_is_told():
+    settings, drive = choose(TapSettings, {}), HoleDrive(kind="drill", holes=(bore(0, 5.0),))
+    data = cutting(6.0, 3.0)
+    found = tap(drive, TOOLS["TAP-B M6x1"], data, stock(), SETUP, settings, NO_PROGRESS)
+    assert not len(found.path) and found.findings[0].code == "hole.no-thread"
+
+
 @pytest.mark.parametrize("tool", ["TAP-B M8x1", "TAP-B M8x1.25", "DR-K D5"])
 def test_a_tool_that_does_not_cut_the_thread_cuts_nothing(tool):
     planned = tapped(tool, bore(0, 5.0))

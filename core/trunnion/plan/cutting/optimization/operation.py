@@ -13,7 +13,7 @@ from trunnion.model.material import Machine, Material
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.spindle import surface_speed, turns_of
 from trunnion.model.tool import Tool
-from trunnion.plan.cutting.drilling import AXIAL
+from trunnion.plan.cutting.axial import TABLE_FORMS, TABLE_KINDS
 from trunnion.plan.cutting.milling import (
     ROUGHING,
     CuttingSettings,
@@ -36,7 +36,7 @@ from trunnion.plan.cutting.optimization.settings import (
     OptimizeSettings,
 )
 from trunnion.plan.cutting.peak import LEAST_SHARE, largest_engagement
-from trunnion.plan.cutting.power import AXIAL_FORMS, NEWTON_METRES, cutting_power
+from trunnion.plan.cutting.power import NEWTON_METRES, cutting_power
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.settings import Value, checked, choose
 from trunnion.shop.materials import feed_at
@@ -70,13 +70,13 @@ class OptimizationSettings:
 
 
 def can_be_optimised(operation: Operation) -> bool:
-    """Return whether there are models for an operation: a mill that cuts with its flank or end. Drills, reamers and taps keep their
-    tables."""
+    """Return whether there are models for an operation: a mill that cuts with its flank or end. Drills, reamers, taps and thread mills
+    keep their tables."""
     return (
         operation.tool.rotates
         and not operation.tool.locked
-        and operation.kind not in AXIAL
-        and operation.cutter.form not in AXIAL_FORMS
+        and operation.kind not in TABLE_KINDS
+        and operation.cutter.form not in TABLE_FORMS
         and not operation.keeps_data
     )
 
