@@ -213,3 +213,10 @@ def test_rings_and_flutes_are_on_the_cutter(form):
     rings, flute = np.array(rings_of(tool)), np.array(flute_of(tool))
     assert (np.diff(rings[:, 1]) <= 0.0).all() and (rings[:, 0] <= rings[0, 0]).all()
     assert (flute[:, 0] <= rings[0, 0] + 1e-9).all() and flute[-1, 1] < tool.flute_length
+
+
+def test_what_stands_over_the_flutes_is_not_cut():
+    disc = flat(10.0)(flute=4.0)
+    stops = [(-20, -3.0, 6.0), (120, -3.0, 6.0)]
+    assert run(disc, stops).depth_of_cut[1] == approx(4.0)
+    assert run(FLAT, stops).depth_of_cut[1] == approx(14.0, abs=0.5)

@@ -9,6 +9,7 @@ from trunnion.model.tool.lead import BORING_BAR as BORING_BAR
 from trunnion.model.tool.lead import FINISHING as FINISHING
 from trunnion.model.tool.lead import REAMER as REAMER
 from trunnion.model.tool.lead import TAP as TAP
+from trunnion.model.tool.mill import T_SLOT as T_SLOT
 from trunnion.model.tool.rotating import BUTTON as BUTTON
 from trunnion.model.tool.rotating import FORMS as FORMS
 from trunnion.model.tool.rotating import PLAIN_FORMS as PLAIN_FORMS

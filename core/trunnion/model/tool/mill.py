@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from trunnion.model.tool.rotating import Tool
 
+T_SLOT = "t-slot"
+"""The form of a disc on a thinner neck, which cuts under material."""
 _ROUNDING = 1e-9
 """Share of a radius by which an outline may stand out of it: its numbers were computed."""
 
@@ -76,7 +78,7 @@ MILLS: Mapping[str, Callable[[Tool], str]] = {
     "button": _button,
     "taper": _taper,
     "barrel": _barrel,
-    "t-slot": _t_slot,
+    T_SLOT: _t_slot,
     "form": _form,
 }
 """What the numbers of each form of milling cutter lack, in words, or nothing; a button, which turns, has the end of a ball."""

@@ -21,7 +21,7 @@ from trunnion.model.tool.lead import (
     wrong_reamer,
     wrong_tap,
 )
-from trunnion.model.tool.mill import MILLS
+from trunnion.model.tool.mill import MILLS, T_SLOT
 from trunnion.model.tool.thread_mill import THREAD_MILL, mill_core, wrong_thread_mill
 from trunnion.settings import added
 
@@ -185,6 +185,17 @@ class Tool:
     def core_radius(self) -> float:
         """Half the core's diameter."""
         return self.core_diameter / 2
+
+    @property
+    def column_radius(self) -> float:
+        """Radius in mm within which nothing stays over the tip where the tool has been: of a T-slot cutter, over whose disc material
+        stays, that of what carries the disc; of others the core's."""
+        if self.form != T_SLOT:
+            return self.core_radius
+        carrier = (
+            self.neck_diameter if self.neck_length > self.flute_length else self.shank_diameter
+        )
+        return min(carrier / 2, self.core_radius)
 
     @property
     def edge_angle(self) -> float:

@@ -37,7 +37,7 @@ class ColumnCuts:
     def of(path: Toolpath, tool: Tool, widths: float) -> ColumnCuts:
         """Return the cuts of a path; `widths` is the share of the cutter's radius that counts."""
         starts, ends, _, error = cutting_chords(path, tool)
-        radius = widths * (tool.core_radius - error)
+        radius = widths * (tool.column_radius - error)
         return ColumnCuts(starts, ends, radius, min(tool.corner_radius, radius), tool.flute_length)
 
     def lowered(self, heights: Floats, points: Floats) -> Floats:

@@ -112,7 +112,7 @@ class PlanningStock:
             path.position,
             path.motion,
             path.centre,
-            tool.core_radius,
+            tool.column_radius,
             tool.corner_radius,
         )
         if tool.full_width_height > 0.0:
@@ -223,7 +223,7 @@ class PlanningStock:
     ) -> tuple[Floats, Floats]:
         """Do as `lower`, and return also the height that each block takes off, squared and summed over the area in plan: (n,) mm4."""
         starts, ends, rows, error = cutting_chords(path, tool)
-        radius, gone = self.widths * (tool.core_radius - error), np.empty((len(starts), 2))
+        radius, gone = self.widths * (tool.column_radius - error), np.empty((len(starts), 2))
         if len(starts):
             ends_in_plan = np.vstack([starts, ends])[:, :2]
             around = tool.core_radius + 2.0 * self.cell

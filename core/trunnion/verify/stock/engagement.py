@@ -93,8 +93,11 @@ def probes_of(moves: Moves) -> Probes:
 def engagement_of(probes: Probes, tally: Tally, moves: Moves) -> Engagement:
     """Return what the counts at the probes say about each move."""
     n, owner = len(moves), np.repeat(np.arange(len(moves)), np.diff(probes.start))
-    seen = tally.spans[:, 1] > tally.spans[:, 0]
-    deep = np.where(seen, tally.spans[:, 1] - np.where(seen, tally.spans[:, 0], 0.0), 0.0)
+    # What stands over the flutes, as over the disc of a T-slot cutter, is not cut.
+    flutes = np.array([tool.flute_length for tool in moves.tools])[moves.tool] if n else np.zeros(0)
+    lowest, highest = tally.spans[:, 0], np.minimum(tally.spans[:, 1], flutes[owner])
+    seen = highest > lowest
+    deep = np.where(seen, highest - np.where(seen, lowest, 0.0), 0.0)
     # The widest ring at most half as high as the material is deep; where none is, the lowest.
     height = probes.rings[moves.tool[owner], :, 1]
     row = np.minimum((height > 0.5 * deep[:, None]).sum(axis=1), RINGS - 1)
