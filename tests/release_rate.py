@@ -1,7 +1,7 @@
 """How many of the random parts are released, at once and after repairs, and how much of their feed time is air.
 
-    python tests/release_rate.py panel leaning edged plate casing recessed impeller --seeds 0-19 [--jobs 2] [--set KEY=VALUE]
-                                 [--json FILE] [--keep FOLDER]
+    python tests/release_rate.py panel leaning edged demanded pitted plate casing recessed impeller --seeds 0-19 [--jobs 2]
+                                 [--set KEY=VALUE] [--json FILE] [--keep FOLDER]
 
 Every part goes through the command line as a shop's part would. One line a part: verdict, coverage of what can be reached, share of air in
 the feed time, minutes at the machine, seconds it took, and the first line that says why it was rejected.
@@ -110,10 +110,12 @@ def outcomes(
 ) -> list[Outcome]:
     """Return what came of the parts of some kinds and seeds, each shown when it is done."""
     from seeded.casings import casing
+    from seeded.demanded_plates import demanded_plate
     from seeded.edged_panels import edged_panel
     from seeded.impellers import impeller
     from seeded.leaning_panels import leaning_panel
     from seeded.panels import panel
+    from seeded.pitted_panels import pitted_panel
     from seeded.plates import plate
     from seeded.recesses import recessed_casing
 
@@ -121,6 +123,8 @@ def outcomes(
         "panel": panel,
         "leaning": leaning_panel,
         "edged": edged_panel,
+        "demanded": demanded_plate,
+        "pitted": pitted_panel,
         "plate": plate,
         "casing": casing,
         "recessed": recessed_casing,
@@ -156,7 +160,17 @@ def main() -> None:
     asked.add_argument(
         "kinds",
         nargs="+",
-        choices=("panel", "leaning", "edged", "plate", "casing", "recessed", "impeller"),
+        choices=(
+            "panel",
+            "leaning",
+            "edged",
+            "demanded",
+            "pitted",
+            "plate",
+            "casing",
+            "recessed",
+            "impeller",
+        ),
     )
     asked.add_argument("--seeds", default="0-19")
     asked.add_argument("--jobs", type=int, default=os.cpu_count() or 1)

@@ -14,6 +14,7 @@ import pytest
 
 from gap_turning import ring_with_gaps
 from holed import holed_plate
+from pitted import pitted_block
 from subjects import (
     MILLING,
     PLANNERS,
@@ -90,7 +91,7 @@ def case(name) -> Case:
     parts = [(own(f)[0], until(f, "toolpath")) for f in PLANNERS]
     mine, alike = of_strategy(name, parts)
     if not mine:
-        mine, others = of_strategy(name, [holed_plate()])
+        mine, others = of_strategy(name, [holed_plate(), pitted_block()])
         alike = alike or others
     if not (mine or alike):
         mine, alike = of_strategy(name, [ring_with_gaps()])

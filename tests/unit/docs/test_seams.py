@@ -40,6 +40,8 @@ OTHER_WORDS = {
     "trunnion/plan/holes/settings.py": {"hole."},
     "trunnion/toolpath/motion/hole_access.py": {"hole."},
     "trunnion/toolpath/motion/finished_bores.py": {"hole."},
+    # the settings of cutting pits, which planners read to know which cutters get in
+    "trunnion/plan/prismatic/pits.py": {"plane."},
     # the kind of features that is recognised alike in parts of every family
     "trunnion/recognize/holes/features.py": {"hole"},
     # what a fit in a STEP file is of, a hole or a shaft

@@ -18,7 +18,7 @@ from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.feature import Feature
 from trunnion.plan.holes.drive import hole_drive
 from trunnion.plan.holes.hole import hole_in
-from trunnion.plan.holes.tools import drills_for, tip_of
+from trunnion.plan.holes.tools import drills_for, pilots_for, tip_of
 from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
 from trunnion.plan.panel.route import RouteSettings
 from trunnion.plan.panel.tasks import PanelPlanState
@@ -423,3 +423,40 @@ def test_a_fix_changes_no_drill_for_one_of_another_shape():
         )
     spot = next(o for o in process.operations if o.kind == "spot")
     assert next_tool(process, spot, job, lambda t: True) is None
+
+
+@pytest.mark.parametrize("diameter", [8.0, 7.5, 5.0, 3.0])
+@pytest.mark.parametrize("angle", [90.0, 118.0, 140.0, 180.0])
+def test_no_drill_leaves_the_cone_of_a_blind_hole(diameter, angle):
+    bore = shape(hole(0, 0, 8, 12.0, point_angle=angle)).bore
+    drill = replace(D8, diameter=diameter)
+    tip = tip_of(bore, drill, 1.0)
+
+    def floor_at(radius):
+        return bore.bottom - bore.point_length * (1.0 - radius / bore.radius)
+
+    # Both are cones: where tip and edge are inside, all of the drill is.
+    assert tip >= floor_at(0.0) - 1e-9
+    assert tip + drill.point_length >= floor_at(drill.radius) - 1e-9
+    assert min(tip - floor_at(0.0), tip + drill.point_length - floor_at(drill.radius)) == approx(0)
+
+
+def test_the_thickest_drill_with_the_holes_point_leaves_its_cone_before_it_is_milled():
+    open_above, _ = around(walled(hole(30, 30, 8.3, 12.0)))
+    bore = shape(hole(30, 30, 8.3, 12.0, point_angle=140.0)).bore
+    drills = [replace(D8, name=f"D{d:g}", diameter=d) for d in (5.0, 8.0, 8.3)]
+    drills.append(replace(D8, name="sharper", diameter=8.2, point_angle=118.0))
+    found = pilots_for(bore, 8.25, drills, open_above, 1.0)
+    assert [t.name for t in found.tools] == ["D8"]
+    flat = shape(hole(30, 30, 8.3, 12.0)).bore
+    through = shape(hole(30, 30, 8.3)).bore
+    assert not pilots_for(flat, 8.3, drills, open_above, 1.0).tools
+    assert not pilots_for(through, 8.3, drills, open_above, 1.0).tools
+
+
+def test_a_blind_hole_that_is_milled_is_drilled_before_and_a_ring_of_its_cone_is_told():
+    process = route(walled(hole(30, 30, 8.3, 12.0, point_angle=140.0)))
+    (drill,) = [o for o in process.operations if o.kind == "drill"]
+    (milled,) = [o for o in process.operations if o.kind == "hole_mill"]
+    assert drill.tool.diameter == 8.0 and drill.id in milled.after
+    assert not [o for o in route(walled(hole(30, 30, 8.3))).operations if o.kind == "drill"]

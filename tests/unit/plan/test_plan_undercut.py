@@ -1,4 +1,4 @@
-"""A recess in a pocket's wall hides under material: vertical cutters must never follow it."""
+"""A recess in a pocket's wall hides under material: of all cutters only a T-slot cutter may follow it, as far as its neck lets it."""
 
 from __future__ import annotations
 
@@ -32,5 +32,6 @@ def test_nothing_is_cut_into_what_stands_over_the_recess(programmed):
     assert programmed.verdict.collisions == 0
 
 
-def test_the_recess_is_named(programmed):
-    assert {"panel.undercut", "verify.unplanned"} <= {f.code for f in programmed.findings()}
+def test_what_no_disc_gets_to_in_the_recess_is_named(programmed):
+    assert [o.kind for o in programmed.process.operations].count("pit") == 1
+    assert {"pit.left", "verify.unreachable"} <= {f.code for f in programmed.findings()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import compress
@@ -14,6 +15,7 @@ from trunnion.model.feature import Feature, Recognition
 from trunnion.model.guides import GuideCurve, GuideKind
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
+from trunnion.model.tool import Tool
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.holes.hole import (
     Countersink,
@@ -203,8 +205,13 @@ def _parts(operation: Operation, shape: HoleShape, process: ProcessTree) -> tupl
     if operation.kind in FINISHING_KINDS:
         return (shape.narrow,)
     if operation.kind == FLOOR:
-        drilled = _drilled_by(operation, shape.bore.feature, process)
-        return (below_point(shape.bore, drilled),)
+        drills = _drills_before(operation, shape.bore.feature, process)
+        point = max((d.point_length for d in drills), default=math.inf)
+        return (below_point(shape.bore, point),)
+    if operation.kind == BORE:
+        drills = _drills_before(operation, shape.bore.feature, process)
+        core = max((d.diameter for d in drills), default=0.0)
+        return (replace(shape.bore, core=min(core, shape.bore.diameter)),)
     return (shape.bore,)
 
 
@@ -213,12 +220,12 @@ def below_point(bore: PlannedHole, point_length: float) -> PlannedHole:
     return replace(bore, top=min(bore.bottom + point_length + OVERLAP, bore.top))
 
 
-def _drilled_by(operation: Operation, feature: str, process: ProcessTree) -> float:
-    """Return the length of the point that drilled a feature before an operation; infinite where none did."""
-    earlier: Sequence[Operation] = process.of_setup(operation.setup)
-    points = [
-        o.cutter.point_length
-        for o in earlier
-        if o.kind == DRILL and feature in o.all_features and not o.suppressed
-    ]
-    return max(points, default=float("inf"))
+def _drills_before(operation: Operation, feature: str, process: ProcessTree) -> tuple[Tool, ...]:
+    """Return the tools that drilled a feature before an operation."""
+    found = []
+    for other in process.of_setup(operation.setup):
+        if other.id == operation.id:
+            break
+        if other.kind == DRILL and feature in other.all_features and not other.suppressed:
+            found.append(other.cutter)
+    return tuple(found)

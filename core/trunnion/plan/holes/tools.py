@@ -120,12 +120,15 @@ class HoleSpace:
 def tip_of(hole: PlannedHole, tool: Tool, breakthrough: float) -> float:
     """Return how deep a drill's tip goes in a hole, mm in the setup's frame.
 
-    Through holes: the full diameter goes on past the end. Blind holes: the drill's full diameter ends where the hole's does, but its tip
-    goes no deeper than the hole's own cone or floor, whichever ends it first.
+    Through holes: the full diameter goes on past the end. Blind holes: as deep as neither the tip nor the edge of the drill's full
+    diameter leaves the hole's own cone, or goes below its floor. A drill of the hole's diameter ends where that does, or with its tip at
+    the cone's; a thinner one with that point goes on down to the tip of the cone.
     """
     if hole.through:
         return hole.bottom - breakthrough - tool.point_length
-    return hole.bottom - min(hole.point_length, tool.point_length)
+    # How high over the cone's tip the hole is as wide as the drill.
+    narrow = hole.point_length * min(tool.radius / hole.radius, 1.0)
+    return hole.bottom - hole.point_length + max(narrow - tool.point_length, 0.0)
 
 
 def drills_for(
@@ -175,6 +178,37 @@ def drills_for(
     own = [t for t in free if abs(t.point_angle - hole.point_angle) <= SAME_ANGLE]
     fitting = free if hole.through or not own else own
     return Candidates(tools=tuple(sorted(fitting, key=_order_of(hole))))
+
+
+def pilots_for(
+    hole: PlannedHole,
+    widest: float,
+    tools: Sequence[Tool],
+    around: HoleSpace,
+    breakthrough: float,
+) -> Candidates:
+    """Return the drills, at most as wide as that (mm), that leave the cone of a blind hole which is milled after them, the thickest first:
+    those with its point that are long enough; none for a hole that has no cone."""
+    if hole.through or hole.is_flat:
+        return Candidates(tools=())
+    tips = {t.name: tip_of(hole, t, breakthrough) for t in tools}
+    found = [
+        t
+        for t in tools
+        if t.diameter <= widest + tolerance.COINCIDENT
+        and abs(t.point_angle - hole.point_angle) <= SAME_ANGLE
+        and t.flute_length >= hole.top - tips[t.name] + CHIP_SPACE * t.diameter
+        and around.has_space(hole, t, tips[t.name])
+    ]
+    thickest = max((t.diameter for t in found), default=0.0)
+    return Candidates(
+        tools=tuple(
+            sorted(
+                (t for t in found if t.diameter >= thickest - tolerance.COINCIDENT),
+                key=lambda t: (t.stickout, t.name),
+            )
+        )
+    )
 
 
 def mills_of(

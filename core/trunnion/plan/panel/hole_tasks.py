@@ -37,7 +37,7 @@ from trunnion.plan.holes.settings import (
     HoleSettings,
 )
 from trunnion.plan.holes.thread_mills import threaded
-from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, sinks_for
+from trunnion.plan.holes.tools import HoleSpace, drills_for, either, mills_of, pilots_for, sinks_for
 from trunnion.plan.panel.tasks import OperationTask, PanelPlanState
 from trunnion.plan.tool_choice import Candidates, ToolRequirement
 from trunnion.settings import choose
@@ -245,6 +245,38 @@ def _drill_tasks(
     ]
     return _tasks(
         state, stage, fitted, lambda hole: (*_size(hole), _deep_class(hole, known.drilling)), _own
+    )
+
+
+def _pilot_tasks(
+    state: PanelPlanState, stage: Stage, features: Sequence[Feature]
+) -> list[OperationTask]:
+    """Ask for drills that leave the cone of blind bores which are milled after them."""
+    known = _planning(state, stage, features)
+    drills = state.shop.tools_for(state.material.iso_group, "drill")
+    fitted = [
+        HoleFit(
+            feature=f,
+            hole=known.bores[f.id],
+            found=pilots_for(
+                shape.bore,
+                known.bores[f.id].diameter,
+                drills,
+                known.around,
+                known.drilling.breakthrough,
+            ),
+            faces=f.with_role("bottom"),
+        )
+        for f, shape in _bored_here(state, known, stage, features)
+        if f.id in known.mills and known.mills[f.id].tools
+    ]
+    # Without one the helix is enough: the cone that stays is told.
+    return _tasks(
+        state,
+        stage,
+        [one for one in fitted if one.found.tools],
+        lambda hole: (*_size(hole), _deep_class(hole, known.drilling)),
+        _own,
     )
 
 
@@ -470,6 +502,7 @@ HOLE_TASK_MAKERS: Mapping[
 ] = {
     "spot": _spot_tasks,
     "drill": _drill_tasks,
+    "pilot": _pilot_tasks,
     "hole_mill": _mill_tasks,
     "hole_floor": _floor_tasks,
     "counterbore": _counterbore_tasks,

@@ -24,6 +24,7 @@ from trunnion.plan.panel.freeform.swarf_tasks import (
 )
 from trunnion.plan.panel.hole_tasks import HOLE_TASK_MAKERS
 from trunnion.plan.panel.outline_tasks import OUTLINE_TASK_MAKERS
+from trunnion.plan.panel.pit_tasks import PIT_TASK_MAKERS
 from trunnion.plan.panel.tasks import PLANE_TASK_MAKERS, OperationTask, PanelPlanState
 from trunnion.shop import Stage
 
@@ -55,6 +56,7 @@ TASK_MAKERS = {
     **PLANE_TASK_MAKERS,
     **OUTLINE_TASK_MAKERS,
     **FREEFORM_TASK_MAKERS,
+    **PIT_TASK_MAKERS,
     **HOLE_TASK_MAKERS,
 }
 """The rule behind each word that a typical plan gives for its cutter."""

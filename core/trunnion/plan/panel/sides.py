@@ -83,11 +83,13 @@ def _between_sides(
 
 
 def is_from_below(feature: Feature, recognition: Recognition, part: SectionSource) -> bool:
-    """Return whether a feature is reached from under the part: as it says itself, else as its floor or top looks."""
+    """Return whether a feature is reached from under the part: as it says itself, else as its floor or top looks; one that stands upright,
+    as the back of a pit does, does not say."""
     tags = feature.with_role("floor", "top")
     if "direction" in feature.attributes or not tags:
         return from_below(feature)
-    return bool(recognition.frame.local_direction(part.graph().normal[tags[0] - 1])[2] < 0.0)
+    up = float(recognition.frame.local_direction(part.graph().normal[tags[0] - 1])[2])
+    return up < -LEVEL
 
 
 def _of_hole(feature: Feature, states: Sequence[PanelPlanState]) -> tuple[int, ...]:

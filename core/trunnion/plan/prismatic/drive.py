@@ -20,6 +20,7 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.tabs import Tab, tabs_of
 from trunnion.plan.plane_guides import GuideSpace, area_lines, wall_faces_on, wall_line
+from trunnion.plan.prismatic.pits import PIT, pit_space
 from trunnion.plan.prismatic.regions import (
     Band,
     SetupSpace,
@@ -224,6 +225,8 @@ def drive_of(operation: Operation, process: ProcessTree, space: SetupSpace) -> P
         return _free_top(operation, feature, space)
     if operation.kind == "island_top":
         return _island_top(operation, feature, space)
+    if operation.kind == PIT:
+        return _pit(operation, feature, space)
     raise Refused(
         f"{operation.id}: no drive geometry is known for operations of kind {operation.kind}"
     )
@@ -445,6 +448,29 @@ def _island_top(operation: Operation, feature: Feature, space: SetupSpace) -> Pl
         space.part.face_outline(space.setup.frame, tags[0]),
         over.boundary,
         (),
+    )
+
+
+def _pit(operation: Operation, feature: Feature, space: SetupSpace) -> PlaneDrive:
+    """Return the drive of a pit: a level over it, in which nothing is wanted and whose boundary is free for what follows the disc of a
+    T-slot cutter, and one of its own."""
+    pit = pit_space(feature, space)
+    walls = tuple(
+        WallGuide(curve=run, top=pit.roof, bottom=pit.floor, fillet=pit.fillet, faces=feature.tags)
+        for curve in pit.wanted.curves()
+        for run in runs(curve, on_rim(curve, pit.beside))
+    )
+    return PlaneDrive(
+        feature=feature.id,
+        kind=operation.kind,
+        levels=(
+            DriveLevel(top=pit.top, bottom=pit.roof, wanted=EMPTY_REGION, boundary=pit.over),
+            DriveLevel(top=pit.roof, bottom=pit.floor, wanted=pit.wanted, boundary=pit.beside),
+        ),
+        walls=walls,
+        fillet=pit.fillet,
+        stock_top=pit.top,
+        faces=operation.faces,
     )
 
 

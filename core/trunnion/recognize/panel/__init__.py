@@ -104,9 +104,7 @@ class PanelFamily:
         around = _surroundings(above, shown, features)
         features.extend(around.features)
         findings.extend(around.findings)
-        details = make_details(above, below, features, _unexplained(above, features), numbers)
-        features.extend(details.features)
-        findings.extend(details.findings)
+        features += make_details(above, below, features, _unexplained(above, features), numbers)
         remaining = _unexplained(above, features)
         findings.extend(above.slices.findings)
         findings.extend(

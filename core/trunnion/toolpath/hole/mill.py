@@ -163,14 +163,18 @@ def _too_wide(hole: PlannedHole, tool: Tool) -> Finding | None:
 
 
 def _left(hole: PlannedHole) -> list[Finding]:
-    """Return what is to be said of the cone that a cutter leaves at the bottom of a blind hole."""
-    if hole.through or hole.is_flat:
+    """Return what is to be said of the cone that a cutter leaves at the bottom of a blind hole: all of it, or what is around a drill that
+    was there before."""
+    ring = hole.radius - 0.5 * hole.core
+    if hole.through or hole.is_flat or ring <= SMALLEST_RING:
         return []
+    left = "is left" if hole.core <= 0.0 else f"is left in a ring {trimmed(ring, 2)} mm wide"
+    deep = hole.point_length if hole.core <= 0.0 else hole.point_length * ring / hole.radius
     return [
         remark(
             "hole.point",
-            f"{hole.feature}: the cone of {trimmed(hole.point_angle, 1)} degrees at its bottom is left, "
-            f"{trimmed(hole.point_length, 2)} mm deep",
+            f"{hole.feature}: the cone of {trimmed(hole.point_angle, 1)} degrees at its bottom {left}, "
+            f"{trimmed(deep, 2)} mm deep",
             hole.feature,
             remedy="drill its middle with that point before, or accept it",
         )
