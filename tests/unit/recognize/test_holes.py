@@ -252,6 +252,14 @@ def test_the_mouth_is_where_the_highest_rim_is() -> None:
     assert hole.mouth == approx([20, 20, 20]) and hole_sizes(hole)["depth"] == approx(20)
 
 
+@pytest.mark.parametrize("angle", [1e-4, 0.01, 0.03, 0.049, 0.06])
+def test_a_part_that_leans_a_little_has_the_same_sizes(angle: float) -> None:
+    shape = drilled(flat_hole(10.0, 3.0)).val().wrapped
+    up = np.array(samples.turned_direction((0, 0, 1), (0, 1, 0), angle))
+    (found,) = find_holes(graph_of(samples.turned(shape, (0, 1, 0), angle)), 30.0, up)
+    assert hole_sizes(found) == {"diameter": 10.0, "depth": 3.0, "through": False}
+
+
 def test_an_inclined_hole_reaches_from_rim_to_rim() -> None:
     along = np.array([1.0, 0.0, 1.0]) / sqrt(2.0)
     (hole,) = holes_in(block().cut(cylinder(8, 80, np.array([30, 20, 10]) - 40 * along, along)))

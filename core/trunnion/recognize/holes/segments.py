@@ -199,15 +199,21 @@ def _edges(graph: FaceGraph, faces: Iterable[int]) -> list[int]:
 
 
 def _heights(graph: FaceGraph, faces: Iterable[int], frame: Frame) -> Floats:
-    """Return heights that include the ends of faces: of points on their edges, and of their boxes where the axis is one of the graph's."""
+    """Return heights that include the ends of faces: of points on their edges, and of their boxes where the axis is one of the graph's.
+
+    A box reaches past a face whose axis leans from the graph's, by no more than the sine of that times how far it is from the axis.
+    """
     own = list(faces)
     rows = np.array(_edges(graph, own), dtype=np.int64)
     points = np.concatenate([graph.start[rows], graph.middle[rows], graph.end[rows]])
     found = [frame.to_local(points)[:, 2]]
     along = int(np.argmax(np.abs(frame.z)))
     if abs(frame.z[along]) > np.cos(ANGLE):
-        corners = np.concatenate([graph.box_low[own], graph.box_high[own]])
-        found.append((corners[:, along] - frame.origin[along]) * np.sign(frame.z[along]))
+        corners = np.concatenate([graph.box_low[own], graph.box_high[own]]) - frame.origin
+        far = np.linalg.norm(np.abs(np.delete(corners, along, axis=1)).max(axis=0))
+        past = float(np.linalg.norm(np.delete(frame.z, along)) * far)
+        reached = corners[:, along] * np.sign(frame.z[along])
+        found.append(np.array([reached.min() + past, reached.max() - past]))
     return np.concatenate(found)
 
 
