@@ -1,6 +1,6 @@
 """How many of the random parts are released, at once and after repairs, and how much of their feed time is air.
 
-    python tests/release_rate.py panel leaning edged demanded pitted plate casing recessed impeller --seeds 0-19 [--jobs 2]
+    python tests/release_rate.py panel leaning edged demanded kept pitted plate casing recessed impeller --seeds 0-19 [--jobs 2]
                                  [--set KEY=VALUE] [--json FILE] [--keep FOLDER]
 
 Every part goes through the command line as a shop's part would. One line a part: verdict, coverage of what can be reached, share of air in
@@ -113,6 +113,7 @@ def outcomes(
     from seeded.demanded_plates import demanded_plate
     from seeded.edged_panels import edged_panel
     from seeded.impellers import impeller
+    from seeded.kept_panels import kept_panel
     from seeded.leaning_panels import leaning_panel
     from seeded.panels import panel
     from seeded.pitted_panels import pitted_panel
@@ -124,6 +125,7 @@ def outcomes(
         "leaning": leaning_panel,
         "edged": edged_panel,
         "demanded": demanded_plate,
+        "kept": kept_panel,
         "pitted": pitted_panel,
         "plate": plate,
         "casing": casing,
@@ -165,6 +167,7 @@ def main() -> None:
             "leaning",
             "edged",
             "demanded",
+            "kept",
             "pitted",
             "plate",
             "casing",

@@ -32,6 +32,7 @@ from trunnion.pipeline.repair.rounds import repaired
 from trunnion.pipeline.repair.settings import RepairSettings
 from trunnion.pipeline.step import Result, Step, Work
 from trunnion.pipeline.toolpaths import findings_of, make_paths, strategy_settings
+from trunnion.plan.allowances import allowance_words, on_operations, with_allowances_kept
 from trunnion.plan.blank import BlankSettings
 from trunnion.plan.contract import RouteJob, planner_for
 from trunnion.plan.cutting.milling import CuttingSettings
@@ -114,6 +115,7 @@ def _recognize(session: Session, context: Context, progress: Progress) -> Result
     after = replace(session, recognition=kept)
     measured = _recognition(after if kept is found else measured_anew(after, context))
     whole = with_demands(measured, session.recognition, context.part.dimensions, context.shop)
+    whole = with_allowances_kept(whole, session.recognition)
     return Result(session=replace(session, recognition=whole), findings=whole.findings)
 
 
@@ -197,7 +199,7 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
         progress=progress,
     )
     process = routed(planner, job, library_choice(session, context))
-    process = with_manual_operations(session.process, process)
+    process = on_operations(with_manual_operations(session.process, process), recognition)
     return Result(
         session=replace(session, setups=process.setups or setups, process=process),
         findings=process.findings,
@@ -395,6 +397,7 @@ STEP_TABLE: tuple[Step, ...] = (
             tuple(p.key for p in s.paths),
             s.fixtures,
             *demand_words(s.recognition),
+            *allowance_words(s.recognition),
         ),
         done=lambda s: s.verdict is not None,
         version=2,

@@ -19,7 +19,7 @@ from trunnion.geometry.development import Development
 from trunnion.geometry.frame import Frame
 from trunnion.geometry.sheet.skin import Skin
 from trunnion.model.blank import Blank
-from trunnion.model.feature import Recognition
+from trunnion.model.feature import Feature, Recognition
 from trunnion.model.fixture import Fixture
 from trunnion.model.guides import GuideCurve
 from trunnion.model.operation import Operation, OperationPath
@@ -33,6 +33,7 @@ from trunnion.plan.prismatic.drive import PlaneDrive
 from trunnion.plan.prismatic.fixtures import PlanFixture, off_fixtures
 from trunnion.plan.prismatic.guide_faces import on_guide_faces
 from trunnion.plan.prismatic.keep_out import off_boxes
+from trunnion.plan.prismatic.kept import kept_by, with_kept
 from trunnion.progress import Progress
 from trunnion.registry import PLANNERS
 from trunnion.settings import Value, checked, choose, digest
@@ -288,6 +289,17 @@ class Leaning(Protocol):
 
 
 @runtime_checkable
+class AllowancePlanner(Protocol):
+    """A planner whose operations leave what a person demands to stay on features (`plan.allowances`)."""
+
+    allowance_kinds: tuple[str, ...]
+    """The kinds of features that it can leave material on."""
+
+    def walls_with(self, feature: Feature, recognition: Recognition) -> str:
+        """Return the id of the feature whose operations cut a feature's walls; the feature's own where those on it do."""
+
+
+@runtime_checkable
 class SkinPlanner(Protocol):
     """A planner that looks at skins of every part of its family: they can be made before it is asked."""
 
@@ -311,6 +323,14 @@ def planner_for(family: str) -> Planner:
     return planner
 
 
+def allowance_planner(family: str) -> AllowancePlanner:
+    """Return the planner of a family that can leave material on features; raise `BadInput` where it has none, or it can't."""
+    planner = planner_for(family)
+    if not isinstance(planner, AllowancePlanner):
+        raise BadInput(f"material is not left on purpose on features of {planner.noun} yet")
+    return planner
+
+
 def driven_by(
     makers: Mapping[type, DriveMaker],
     planner: Planner,
@@ -321,9 +341,9 @@ def driven_by(
 ) -> OperationDrive:
     """Return the drive of an operation by the maker for the class that its strategy needs; raise `Refused` where there is none.
 
-    The faces that a person gave it lead a plane drive; makers of other drives take the operation's. What fixtures, or the areas that it
-    avoids, keep its cutter from is cut off a plane drive; makers of other drives see to that themselves. Links know those areas by the
-    drive's setup.
+    The faces that a person gave it lead a plane drive, which leaves what its feature keeps on purpose; makers of other drives take the
+    operation's. What fixtures, or the areas that it avoids, keep its cutter from is cut off a plane drive; makers of other drives see to
+    that themselves. Links know those areas by the drive's setup.
     """
     if needs.drive not in makers:
         raise Refused(
@@ -333,6 +353,8 @@ def driven_by(
     driven = makers[needs.drive](operation, needs, scene, progress)
     if needs.drive is PlaneDrive and operation.own_faces:
         driven = _on_guide_faces(driven, operation, scene)
+    if needs.drive is PlaneDrive and kept_by(operation) != (0.0, 0.0):
+        driven = _with_kept(driven, operation)
     if needs.drive is PlaneDrive and scene.fixtures:
         driven = _off_fixtures(driven, operation, scene)
     return driven if needs.leans or not operation.avoid else _off_boxes(driven, operation, needs)
@@ -343,6 +365,17 @@ def _on_guide_faces(driven: OperationDrive, operation: Operation, scene: Scene) 
     assert isinstance(plane, PlaneDrive)
     space = guide_space(scene.context.part, driven.to_world)
     drive = on_guide_faces(plane, operation.id, operation.faces, space)
+    return replace(
+        driven,
+        lazy=LazyDrive.of(drive, driven.findings),
+        identity=(driven.identity, drive),
+    )
+
+
+def _with_kept(driven: OperationDrive, operation: Operation) -> OperationDrive:
+    plane = driven.drive
+    assert isinstance(plane, PlaneDrive)
+    drive = with_kept(plane, *kept_by(operation))
     return replace(
         driven,
         lazy=LazyDrive.of(drive, driven.findings),

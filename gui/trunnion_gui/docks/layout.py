@@ -28,7 +28,7 @@ class Docks:
     def __init__(self, document: Document, views: Views) -> None:
         self._views = views
         self.features, self.process = FeatureDock(document, views), ProcessDock(document)
-        self.properties, self.messages = PropertiesDock(document), MessagesDock(document)
+        self.properties, self.messages = PropertiesDock(document, views), MessagesDock(document)
         self.code, self.listing, self.deviation = (
             CodeDock(document),
             ListingDock(document),

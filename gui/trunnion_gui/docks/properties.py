@@ -1,4 +1,5 @@
-"""What is selected, in numbers; an operation's own settings and what is demanded of holes can be changed here."""
+"""What is selected, in numbers; an operation's own settings, what is demanded of holes and what features keep can
+be changed here."""
 
 from __future__ import annotations
 
@@ -11,8 +12,10 @@ from trunnion.model.operation import CuttingData, Operation
 from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.settings import Value
 from trunnion_gui import edits
+from trunnion_gui.docks.feature_allowance import FeatureAllowanceFields
 from trunnion_gui.docks.hole_demand import HoleDemandFields
 from trunnion_gui.document import Document
+from trunnion_gui.families.views import Views
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import kind_label
@@ -69,7 +72,7 @@ def mode_rows(data: CuttingData) -> Rows:
 class PropertiesDock(QScrollArea):
     """Properties of the selected feature or operation."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, views: Views) -> None:
         super().__init__()
         self._document = document
         self._operation = ""
@@ -99,6 +102,8 @@ class PropertiesDock(QScrollArea):
         self._column.addLayout(self._data)
         self.demand = HoleDemandFields(document)
         self._column.addWidget(self.demand)
+        self.allowance = FeatureAllowanceFields(document, views)
+        self._column.addWidget(self.allowance)
         self._column.addWidget(self.table)
         self._column.addWidget(self.rules)
         self._column.addLayout(self._forms)
@@ -138,6 +143,7 @@ class PropertiesDock(QScrollArea):
         self.rules.setVisible(bool(rules))
         self._show_form(operation if selected.kind == "operation" else None)
         self.demand.show_for(self._selected_features())
+        self.allowance.show_for(self._selected_features())
 
     def _show(self, title: str, subtitle: str, rows: Rows) -> None:
         self.title.setText(title)

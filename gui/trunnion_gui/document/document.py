@@ -155,6 +155,10 @@ class Document(QObject):
         """Demand a fit or a thread of holes: one entry of the history; what depends on it is stale."""
         self.request("demand", label, ids, values, finish=lambda state: self.keep(label, state))
 
+    def change_allowance(self, ids: tuple[str, ...], label: str, amounts: dict[str, Value]) -> None:
+        """Have features keep material, by field and mm: one entry of the history; what depends on it is stale."""
+        self.request("allowance", label, ids, amounts, finish=lambda state: self.keep(label, state))
+
     def copy_operation(self, id: str, feature: str = "") -> None:
         """Copy an operation, to another feature where one is given, and select the copy."""
         there = {o.id for o in self.session.process.operations} if self.session.process else set()

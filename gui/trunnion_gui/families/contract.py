@@ -84,6 +84,9 @@ class FamilyView:
     has_own_colours = False
     """Whether every feature has a colour of its own, which its row in the table shows."""
 
+    allowance_kinds: tuple[str, ...] = ()
+    """The kinds of feature that a person may have material left on, as the family's planner says."""
+
     def __init__(self, document: Document) -> None:
         self.document = document
 

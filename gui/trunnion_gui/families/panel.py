@@ -9,3 +9,4 @@ class PanelView(FamilyView):
     """The view of panels."""
 
     name = "panel"
+    allowance_kinds = ("pocket", "open_pocket", "island", "rib", "boss", "profile")

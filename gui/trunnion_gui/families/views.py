@@ -46,6 +46,10 @@ class Views:
         """Return the view that presents a feature."""
         return self._by_kind.get(feature.kind, self._plain)
 
+    def allowance_kinds(self, family: str) -> tuple[str, ...]:
+        """Return the kinds of feature of a family that a person may have material left on."""
+        return self._by_name.get(family, self._plain).allowance_kinds
+
     def present(self, found: Recognition | None) -> tuple[FamilyView, ...]:
         """Return the views of kinds that were found."""
         kinds = {f.kind for f in found or ()}

@@ -52,6 +52,8 @@ OPERATION = "operation"
 """Among the groups of settings by step: what may be changed of a single operation."""
 DEMAND = "demand"
 """Among the groups of settings by step: what may be demanded of holes."""
+ALLOWANCE = "allowance"
+"""Among the groups of settings by step: what features may be made to keep."""
 SendEvent = Callable[[str, Any], None]
 Work = Callable[..., Any]
 _writing: set[Work] = set()
@@ -195,6 +197,19 @@ def _demand(
     return state_of(engine, with_hole_demand(engine, session, ids, demand))
 
 
+def _allowance(
+    engine: Any,
+    _progress: Progress,
+    _send_event: SendEvent,
+    session: Session,
+    ids: tuple[str, ...],
+    amounts: dict[str, float],
+) -> SessionState:
+    from trunnion.pipeline.planning.allowances import with_feature_allowance
+
+    return state_of(engine, with_feature_allowance(session, ids, **amounts))
+
+
 @writes_files
 def _save(
     engine: Any, progress: Progress, _send_event: SendEvent, session: Session, path: str
@@ -238,6 +253,7 @@ def _guides(
 def _settings(
     engine: Any, _progress: Progress, _send_event: SendEvent
 ) -> dict[str, tuple[SettingsGroup, ...]]:
+    from trunnion.plan.allowances import FeatureAllowance
     from trunnion.plan.holes.settings import HoleDemand
     from trunnion.plan.manual.operation_change import OperationChange
 
@@ -250,6 +266,7 @@ def _settings(
             *engine.settings().items(),
             (OPERATION, (OperationChange,)),
             (DEMAND, (HoleDemand,)),
+            (ALLOWANCE, (FeatureAllowance,)),
         )
     }
 
@@ -278,6 +295,7 @@ COMMANDS: dict[str, Callable[..., Any]] = {
     "fix": _fix,
     "change": _change,
     DEMAND: _demand,
+    ALLOWANCE: _allowance,
     "save": _save,
     "write": _write,
     "settings": _settings,

@@ -1,4 +1,5 @@
-"""`trunnion edit`: features given other faces, and holes their fits and threads, kept in a project that other commands go on with."""
+"""`trunnion edit`: features given other faces and allowances, and holes their fits and threads, kept in a project that other commands go on
+with."""
 
 from __future__ import annotations
 
@@ -29,9 +30,9 @@ def add(commands: Any) -> None:
     made = part_command(
         commands,
         "edit",
-        "give features other faces by hand: add, take, merge, make; holes fits and threads",
-        "Gives features other faces by hand, in the order add, take, merge, make, then holes their fits and threads, and saves the "
-        "project. Roles and sizes follow from the faces; recognition keeps what was changed.",
+        "give features other faces by hand: add, take, merge, make; allowances; holes fits and threads",
+        "Gives features other faces by hand, in the order add, take, merge, make, then allowances, then holes their fits and threads, "
+        "and saves the project. Roles and sizes follow from the faces; recognition keeps what was changed.",
     )
     made.add_argument(
         "--add",
@@ -61,6 +62,14 @@ def add(commands: Any) -> None:
         metavar="KIND=FACE,...",
         help="make a feature of faces, taken from the ones that have them; may be repeated",
     )
+    for option, where in (("--keep-on-walls", "walls"), ("--keep-on-floors", "floors or tops")):
+        made.add_argument(
+            option,
+            action="append",
+            default=[],
+            metavar="ID,...=MM",
+            help=f"leave so much on the {where} of features on purpose; 0 takes it away; may be repeated",
+        )
     made.add_argument(
         "--fit",
         action="append",
@@ -84,12 +93,16 @@ def add(commands: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Change the features, save the project and print those that a person changed."""
     from trunnion.pipeline.planning import face_edits
+    from trunnion.pipeline.planning.allowances import with_feature_allowance
     from trunnion.pipeline.planning.hole_demands import with_hole_demand
     from trunnion.store.project_file import PROJECT_SUFFIX
 
-    demands = _demands(options)
-    if not (options.add or options.take or options.merge or options.make) and not demands:
-        raise BadCall("nothing to change: give --add, --take, --merge, --make, --fit or --thread")
+    demands, amounts = _demands(options), _amounts(options)
+    changes_faces = options.add or options.take or options.merge or options.make
+    if not changes_faces and not demands and not amounts:
+        raise BadCall(
+            "nothing to change: give --add, --take, --merge, --make, --keep-on-walls, --keep-on-floors, --fit or --thread"
+        )
     if options.out.suffix.lower() != PROJECT_SUFFIX:
         raise BadCall(f"--out wants a file that ends in {PROJECT_SUFFIX}, not {options.out}")
     check_output(options.out.parent)
@@ -102,12 +115,14 @@ def run(options: argparse.Namespace) -> int:
         session = face_edits.with_merged(engine, session, listed(given))
     for given in options.make:
         session = face_edits.with_feature(engine, session, *_named(given))
+    for field, ids, amount in amounts:
+        session = with_feature_allowance(session, ids, **{field: amount})
     for ids, demand in demands:
         session = with_hole_demand(engine, session, ids, demand)
     engine.save(session, options.out)
     assert session.recognition is not None
-    holes = {id for ids, _ in demands for id in ids}
-    changed = [f for f in session.recognition if f.by_hand or f.id in holes]
+    named = {id for ids, _ in demands for id in ids} | {id for _, ids, _ in amounts for id in ids}
+    changed = [f for f in session.recognition if f.by_hand or f.id in named]
     if options.json:
         show_json({"file": str(options.out), "features": [f.as_dict() for f in changed]})
     else:
@@ -127,8 +142,33 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _words(feature: Feature) -> str:
-    """Return what is demanded of a hole, nothing for other features."""
-    return str(feature.attributes.get("thread", feature.attributes.get("fit", "")))
+    """Return what is demanded of a hole, or kept on another feature."""
+    words = [
+        str(feature.attributes[name]) for name in ("thread", "fit") if name in feature.attributes
+    ]
+    kept = (("wall_allowance", "walls"), ("floor_allowance", "floors"))
+    words += [
+        f"{where} {feature.attributes[name]} mm"
+        for name, where in kept
+        if name in feature.attributes
+    ]
+    return ", ".join(words)
+
+
+def _amounts(options: argparse.Namespace) -> list[tuple[str, tuple[str, ...], float]]:
+    """Return what is to stay on features: the field of the allowance, the features and mm."""
+    found = []
+    for field, option, given in (
+        *(("wall_allowance", "--keep-on-walls", g) for g in options.keep_on_walls),
+        *(("floor_allowance", "--keep-on-floors", g) for g in options.keep_on_floors),
+    ):
+        ids, words = _features(given, "pocket-01=0.3")
+        try:
+            amount = float(words)
+        except ValueError:
+            raise BadInput(f"{option} {given}: {words or 'nothing'} is no amount in mm") from None
+        found.append((field, ids, amount))
+    return found
 
 
 def _demands(options: argparse.Namespace) -> list[tuple[tuple[str, ...], HoleDemand]]:
@@ -137,10 +177,10 @@ def _demands(options: argparse.Namespace) -> list[tuple[tuple[str, ...], HoleDem
 
     found = []
     for given in options.fit:
-        ids, words = _holes(given, "hole-01=H7")
+        ids, words = _features(given, "hole-01=H7")
         found.append((ids, fit_demand(words)))
     for given in options.thread:
-        ids, words = _holes(given, "hole-01=M6:12")
+        ids, words = _features(given, "hole-01=M6:12")
         thread, colon, depth = words.partition(":")
         try:
             deep = float(depth) if colon else 0.0
@@ -150,12 +190,14 @@ def _demands(options: argparse.Namespace) -> list[tuple[tuple[str, ...], HoleDem
     return found
 
 
-def _holes(given: str, example: str) -> tuple[tuple[str, ...], str]:
+def _features(given: str, example: str) -> tuple[tuple[str, ...], str]:
     """Return the features before the equals sign of an option's value and the words after it."""
     names, equals, words = given.partition("=")
     ids = listed(names)
     if not equals or not ids:
-        raise BadInput(f"{given}: give holes with commas, = and the demand, as in {example}")
+        raise BadInput(
+            f"{given}: give features with commas, = and what is demanded, as in {example}"
+        )
     return ids, words.strip()
 
 

@@ -21,6 +21,7 @@ from trunnion.model.verdict import Outcome, Verdict
 from trunnion.pipeline.context import Context
 from trunnion.pipeline.work_position import work_positions_of
 from trunnion.plan import setups
+from trunnion.plan.allowances import face_allowances
 from trunnion.plan.holes.demand import bore_demands
 from trunnion.plan.prismatic.drive import FINISHES_OUTLINE, OF_OUTLINES
 from trunnion.post.header import Header
@@ -259,9 +260,10 @@ def prove_programs(
         if not operation.suppressed
         for tag in operation.faces
     }
+    part = context.machined(session.choices, progress).part
     verdict: Verdict = prove(
         programs,
-        context.machined(session.choices, progress).part,
+        part,
         session.blank,
         context.shop.tools,
         [machine_of(s, machines) for s in used],
@@ -272,6 +274,7 @@ def prove_programs(
         facets_fork=fork,
         bore_demands=_bore_demands(session, context),
         tabs=planned_tabs(session.process),
+        allowances=face_allowances(session.recognition, part),
     )
     return verdict
 

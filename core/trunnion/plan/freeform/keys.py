@@ -12,6 +12,8 @@ SCALLOP, ALLOWANCE, BOTTOM, CELL = (
 )
 """Keys of an operation's choices, mm: the scallop height it is wanted with, what it leaves on purpose, the height in the cutting frame that
 it goes down to, and the distance of the positions at which the part's height is measured."""
+KEPT = "feature.allowance"
+"""Key of an operation's choices: what its feature keeps on purpose, mm; an operation leaves it beside its own allowance."""
 LAYER = "surface.layer"
 """Key of an operation's choices: height in mm of the steps that roughing leaves on slopes; where it is not said, its depth of cut."""
 EXTENSION = "surface.extension"
@@ -32,3 +34,8 @@ def number(operation: Operation, key: str) -> float:
     """Return a choice of an operation that is a number; 0 where there is none."""
     value = operation.choices.get(key, 0.0)
     return float(value) if isinstance(value, (int, float)) else 0.0
+
+
+def total_allowance(operation: Operation) -> float:
+    """Return what an operation leaves on curved faces, mm: its allowance for later ones, and what its feature keeps."""
+    return number(operation, ALLOWANCE) + number(operation, KEPT)

@@ -33,7 +33,7 @@ from trunnion.plan.freeform.fixtures import (
     off_fixtures,
     with_fixtures,
 )
-from trunnion.plan.freeform.keys import ALLOWANCE, EXTENSION, OVERHANG, SCALLOP, number
+from trunnion.plan.freeform.keys import EXTENSION, OVERHANG, SCALLOP, number, total_allowance
 from trunnion.plan.prismatic.fixtures import Notice, kept_off
 from trunnion.plan.prismatic.keep_out import excluded
 from trunnion.plan.setups.frames import UPRIGHT, Direction, cutting_setup
@@ -152,9 +152,7 @@ class SurfaceSpace:
         Unless the tool leans, what it can't come to without its shank or holder meeting the part, or any of it a fixture of the setup,
         is none of its area; neither is what it can't come to with its tip outside the boxes that the operation avoids.
         """
-        height, allowance, extension = (
-            number(operation, key) for key in (SCALLOP, ALLOWANCE, EXTENSION)
-        )
+        height, extension = (number(operation, key) for key in (SCALLOP, EXTENSION))
         thickness = _thickness(operation)
         skin, faces, lowest = self.skin, operation.faces, float(self.low[2]) - self.setup.clearance
         if within is not None:
@@ -194,7 +192,7 @@ class SurfaceSpace:
             low=self.low,
             high=self.high,
             clearance=self.setup.clearance,
-            allowance=allowance,
+            allowance=total_allowance(operation),
             height=height,
             digest=self.drive_digest(operation, needs, earlier, upright, within),
             earlier=earlier,
@@ -231,7 +229,7 @@ class SurfaceSpace:
             self.skin.bound,
             len(self.skin.triangles),
             number(operation, SCALLOP),
-            number(operation, ALLOWANCE),
+            total_allowance(operation),
             earlier,
             upright,
             _thickness(operation),

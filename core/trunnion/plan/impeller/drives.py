@@ -18,7 +18,7 @@ from trunnion.plan.channel.cut_space import CutSpace
 from trunnion.plan.channel.drive import ChannelDrive
 from trunnion.plan.contract import DriveNeeds, OperationDrive, Scene
 from trunnion.plan.freeform.drive import SurfaceDrive
-from trunnion.plan.freeform.keys import ALLOWANCE, SCALLOP, number
+from trunnion.plan.freeform.keys import SCALLOP, number, total_allowance
 from trunnion.plan.impeller.wheel import (
     BLADE,
     EDGES,
@@ -69,7 +69,7 @@ def channel_driven(
         blank,
         setup.clearance,
         number(operation, SCALLOP),
-        number(operation, ALLOWANCE),
+        total_allowance(operation),
         scene.recognition.features,
         [laid.key for _, laid in before],
     )
@@ -84,7 +84,7 @@ def channel_driven(
         low=low,
         high=high,
         clearance=setup.clearance,
-        allowance=number(operation, ALLOWANCE),
+        allowance=total_allowance(operation),
         height=number(operation, SCALLOP),
         digest=identity,
         query_for=around,

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from trunnion import tolerance
-from trunnion.geometry.plane.region import Region
+from trunnion.findings import Refused
+from trunnion.geometry.plane.region import Region, union_all
+from trunnion.model.feature import Feature, Recognition
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
+from trunnion.plan.allowances import allowance_of
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.contract import DriveNeeds, OperationDrive, RouteJob, Scene, driven_by
 from trunnion.plan.freeform.drive import SurfaceDrive
@@ -24,7 +28,9 @@ from trunnion.plan.panel.route import make_route
 from trunnion.plan.panel.rules import TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.prismatic.drive import PlaneDrive, drive_of
-from trunnion.plan.prismatic.regions import SetupSpace
+from trunnion.plan.prismatic.kept import KeptArea, off_kept
+from trunnion.plan.prismatic.lean import POCKETS
+from trunnion.plan.prismatic.regions import SetupSpace, parent_of
 from trunnion.plan.prismatic.tabs import TabSettings
 from trunnion.plan.settings import RouteSettings
 from trunnion.progress import Progress
@@ -45,6 +51,12 @@ class PanelPlanner:
         TabSettings,
     )
     cutter_rules: tuple[str, ...] = tuple(TASK_MAKERS)
+    allowance_kinds = (*POCKETS, "island", "rib", "boss", "profile")
+
+    def walls_with(self, feature: Feature, recognition: Recognition) -> str:
+        """Return the pocket that an island stands in: its walls are cut with the pocket's."""
+        pocket = parent_of(feature, recognition) if feature.kind == "island" else None
+        return feature.id if pocket is None else pocket.id
 
     def can_plan(self, part: Part) -> None:
         """Refuse no part: features whose sections can't be made are refused one by one."""
@@ -96,7 +108,33 @@ def _plane_driven(
         drive = freeform_drive(operation, pocket, scene, progress)
     else:
         drive = drive_of(operation, scene.process, space)
+    others = [a for a in _kept_areas(scene) if a.feature not in operation.all_features]
+    drive = off_kept(drive, others)
     return OperationDrive.of(setup=scene.setup, drive=drive, identity=drive)
+
+
+def _kept_areas(scene: Scene) -> tuple[KeptArea, ...]:
+    """Return where walls of pockets and of the outline keep material, in plan."""
+
+    def areas() -> Iterator[KeptArea]:
+        space = _space(scene)
+        for feature in scene.recognition:
+            amount = allowance_of(feature).wall_allowance
+            if amount <= 0.0:
+                continue
+            if feature.kind == "profile":
+                area = space.around().minus(space.silhouette())
+            elif feature.kind in POCKETS and not space.is_freeform(feature):
+                try:
+                    area = union_all([band.wanted for band in space.bands_of(feature)])
+                except Refused:
+                    # It opens to another side: no cutter comes by its walls in this setup.
+                    continue
+            else:
+                continue
+            yield KeptArea(feature=feature.id, area=area, amount=amount)
+
+    return scene.once("kept areas", lambda: tuple(areas()))
 
 
 def _surface_driven(

@@ -16,6 +16,7 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region, union_all
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.material import Machine, Material
 from trunnion.model.tool import Tool
+from trunnion.plan.allowances import allowance_of
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.freeform.space import SurfaceSpace
 from trunnion.plan.prismatic.regions import (
@@ -547,14 +548,14 @@ def _depth(state: PanelPlanState, bands: tuple[Band, ...]) -> float:
 
 
 def _wall_task(state: PanelPlanState, feature: Feature, bands: tuple[Band, ...]) -> ToolRequirement:
-    distance = _wider_foot(state, feature)
+    distance, kept = _wider_foot(state, feature), allowance_of(feature).wall_allowance
     return ToolRequirement(
         depth=_depth(state, bands),
         envelope_area=_kept_off(bands[-1].boundary, distance),
         wanted=_kept_off(bands[-1].wanted, distance),
         corner_radius=floor_fillet(feature),
         exact=True,
-        radius=number(feature, "corner_radius") * state.settings.corner_share,
+        radius=max(number(feature, "corner_radius") - kept, 0.0) * state.settings.corner_share,
         missable=SHARP,
         near=NEAR_WALL,
         cusps=True,

@@ -116,6 +116,7 @@ class PlaneDrive:
     operation begins (the blank's top before facing, the part's top after). `wall_allowance`, `floor_allowance`: what a roughing operation
     leaves (0 for finishing); `levels`, `floors` and `walls` are the finished part's, allowances not taken off. `earlier_radius`: radius of
     the cutter that was in the corners before (rest roughing and corners; 0: none), `earlier_allowance` what it left on the walls.
+    `kept`: what of `wall_allowance` the feature keeps when the program has run; `earlier_allowance` has it too.
     `faces`: the tags that the operation finishes. `beside`: walls that are not finished, but whose feet the cutter must stay off.
     `tabs`: bridges from an outline to the blank's frame that stay, `frame` the plan area of that frame, which no pass clears.
     """
@@ -135,6 +136,12 @@ class PlaneDrive:
     earlier_allowance: float = 0.0
     tabs: tuple[Tab, ...] = added((), written=False)
     frame: Region = added(EMPTY_REGION, written=False)
+    kept: float = added(0.0, written=False)
+
+    @property
+    def finishes(self) -> bool:
+        """Whether nothing stays on the walls for later operations: only what the feature keeps."""
+        return self.wall_allowance <= self.kept and self.floor_allowance <= 0.0
 
     @property
     def top(self) -> float:
@@ -186,6 +193,9 @@ def foot_clearance(fillet: float, corner_radius: float, above: float) -> float:
 
 WALL_ALLOWANCE, FLOOR_ALLOWANCE = "route.wall_allowance", "route.floor_allowance"
 """Keys of an operation's choices that hold what it leaves on walls and floors, mm."""
+
+KEPT_ON_WALLS, KEPT_ON_FLOORS = "feature.wall_allowance", "feature.floor_allowance"
+"""Keys of an operation's choices that hold what its feature keeps on purpose on walls, and on floors or its top, mm."""
 
 HALF_OVERLAP = 1.0
 """mm that halves of the outline cut from both sides go on past its middle, so that no film stays between them."""

@@ -148,7 +148,7 @@ def _over_stock(
     Of finishing the passes along the walls are whole, for what they take off is finer than the planner's stock; the others are there for
     what roughing has left, and the stock at the rim, which a wall keeps high, does not count.
     """
-    finishes = drive.wall_allowance <= 0.0
+    finishes = drive.finishes
     grazes = GRAZE if _leaves_slivers(drive, builder.tool) else 0.0
     trimming = (
         PassTrimming.of(builder, rest, height.z + WORTH, RIM if finishes else grazes)
@@ -187,7 +187,7 @@ def _rests(drive: PlaneDrive, level: DriveLevel, tool: Tool) -> Region:
 def _leaves_slivers(drive: PlaneDrive, tool: Tool) -> bool:
     """Return whether roughing may leave to finishing what is hardly more than its allowance: not where the tool goes deeper than its flutes
     are long, for its neck would meet in a lower layer what an upper one left."""
-    return drive.wall_allowance > 0.0 and drive.top - drive.bottom <= tool.flute_length
+    return not drive.finishes and drive.top - drive.bottom <= tool.flute_length
 
 
 def _layer(drive: PlaneDrive, rest: Region, tool: Tool, data: CuttingData) -> tuple[float, bool]:
@@ -197,7 +197,7 @@ def _layer(drive: PlaneDrive, rest: Region, tool: Tool, data: CuttingData) -> tu
     way, as loads are measured, one pass takes it in layers that are deeper by as much.
     """
     bite = rest.area / tool.diameter
-    if drive.wall_allowance <= 0.0 or bite > data.width:
+    if drive.finishes or bite > data.width:
         return data.depth, False
     return max(min(data.depth * data.width / bite, DEEPEST * tool.diameter), data.depth), True
 
@@ -214,9 +214,10 @@ def _heights(
     if above - bottom < tolerance.SEW:
         return []
     on_floor = any(abs(f.z - level.bottom) < tolerance.SEW and f.fillet > 0.0 for f in drive.floors)
-    finishes = drive.wall_allowance == 0.0 and drive.floor_allowance == 0.0
     foot = (
-        fillet_steps(drive.fillet, tool.corner_radius, scallop) if on_floor and finishes else (0.0,)
+        fillet_steps(drive.fillet, tool.corner_radius, scallop)
+        if on_floor and drive.finishes
+        else (0.0,)
     )
     straight = (
         steps_down(above, bottom + foot[0], min(depth, tool.flank_step(above - bottom - foot[0])))

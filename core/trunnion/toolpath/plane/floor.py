@@ -81,6 +81,7 @@ def floor(
         level = level_at(drive, each.z)
         distance = (
             tool.radius
+            + drive.wall_allowance
             + settings.wall_distance
             + foot_clearance(each.fillet, tool.corner_radius, 0.0)
         )

@@ -18,6 +18,7 @@ from trunnion.model.verdict import Deviation, FaceProof
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.accessibility import Accessibility
 from trunnion.verify.finish.coverage import Samples, on_blank
+from trunnion.verify.judge.allowances import KeptLayers, allowance_findings
 from trunnion.verify.judge.setups import SetupProof
 from trunnion.verify.judge.sides import Side
 from trunnion.verify.judge.turned import TurningResidual
@@ -29,7 +30,7 @@ DECIMALS = 9
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CoverageResult:
-    """Coverage and what goes with it; `on_purpose` (s,) are the samples with what tabs leave on them."""
+    """Coverage and what goes with it; `on_purpose` (s,) are the samples under what is left by intention, `on_tabs` those under tabs."""
 
     coverage: float
     reachable: float
@@ -37,6 +38,7 @@ class CoverageResult:
     deviation: Deviation
     findings: tuple[Finding, ...]
     on_purpose: Bools
+    on_tabs: Bools
 
 
 def covered(
@@ -54,6 +56,7 @@ def covered(
     turned: TurningResidual | None = None,
     uncut: Blank | None = None,
     on_tab: Bools | None = None,
+    layers: KeptLayers | None = None,
 ) -> CoverageResult:
     """Return what all setups together finish of the part.
 
@@ -62,7 +65,7 @@ def covered(
     needs facets of all faces; without machines they are upright. Of faces of tags in `unasked`
     nothing has to be finished, and nothing is told. Where turning has come before, `blank` is what it left, `turned` what it has done to
     the part and `uncut` the blank before it. What stands on samples `on_tab` (s,) is left by intention: their area is neither wanted nor
-    finished.
+    finished; neither is what lies under the `layers` of faces that keep material. These are finished where they keep what they are to.
     """
     frame = sides[0].frame
     n = len(tags)
@@ -78,11 +81,17 @@ def covered(
         residual = np.minimum(residual, turned.residual)
     for p in proofs:
         residual = np.minimum(residual, p.residual)
-    finished = (np.abs(residual) <= settings.tolerance + settings.allowance) & ~blank_face[
-        samples.face
-    ]
+    slack = settings.tolerance + settings.allowance
+    finished = np.abs(residual) <= slack
+    if layers is not None:
+        keeps = (layers.least - settings.tolerance <= residual) & (residual <= layers.most + slack)
+        at_edge = layers.at_edges(residual, settings.tolerance)
+        finished = np.where(layers.most > 0.0, keeps | at_edge, finished)
+    finished &= ~blank_face[samples.face]
     is_open = ~finished & ~blank_face[samples.face] & (residual > 0.0)
     on_purpose = np.zeros(len(samples), bool) if on_tab is None else on_tab & is_open
+    if layers is not None:
+        on_purpose |= layers.under_others(residual, is_open, settings.tolerance)
     open_rows = np.flatnonzero(is_open & ~on_purpose)
     lost = np.zeros(len(samples), bool)
     lost[_unreached(samples, open_rows, sides, tools, settings, progress, machines)] = True
@@ -111,8 +120,16 @@ def covered(
         coverage=coverage,
         reachable=of_reachable,
         faces=faces,
-        findings=_findings(faces, of_reachable, settings),
+        findings=(
+            *_findings(faces, of_reachable, settings),
+            *(
+                allowance_findings(layers, residual, finished, proofs, settings)
+                if layers is not None and is_cut
+                else ()
+            ),
+        ),
         on_purpose=on_purpose,
+        on_tabs=np.zeros(len(samples), bool) if on_tab is None else on_tab & is_open,
         deviation=Deviation(
             face=tags[samples.face[shown]],
             point=frame.to_world(samples.point[shown]),

@@ -6,7 +6,7 @@ or missing coverage; `passed with remarks` when a person should only look.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import partial
 
 import numpy as np
@@ -15,6 +15,7 @@ from trunnion.findings import Finding, Severity
 from trunnion.geometry.arrays import Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.memory import trim_memory
+from trunnion.model.allowance import FaceAllowance
 from trunnion.model.blank import Blank
 from trunnion.model.hole_demand import BoreDemand
 from trunnion.model.material import Machine, Material
@@ -27,6 +28,7 @@ from trunnion.part.shape.facets import Facets, facets_of
 from trunnion.part.shape.surfaces import Surfaces, surfaces_of
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.verify.finish.coverage import Samples, samples_of
+from trunnion.verify.judge.allowances import KeptLayers, layers_on
 from trunnion.verify.judge.bore_demands import demand_findings
 from trunnion.verify.judge.coverage import covered
 from trunnion.verify.judge.findings import setup_findings
@@ -49,6 +51,9 @@ from trunnion.verify.motion import refuse_turning
 from trunnion.verify.settings import ProofSettings
 from trunnion.verify.turning.moves import in_order
 
+LayersOver = Callable[..., KeptLayers | None]
+"""From samples with the tags of their face rows, in a frame, to what faces keep over them (`layers_on`)."""
+
 
 def prove(
     programs: Sequence[Program],
@@ -63,6 +68,7 @@ def prove(
     facets_fork: FacetsFork | None = None,
     bore_demands: Sequence[BoreDemand] = (),
     tabs: Sequence[PlannedTab] = (),
+    allowances: Sequence[FaceAllowance] = (),
 ) -> Verdict:
     """Return the verdict on the programs of all setups, in the order they are cut: each finds the stock that those before it left.
 
@@ -70,7 +76,8 @@ def prove(
     that the part could be reached on); `planned_faces` the tags that some operation means to finish. Without a material nothing is said
     of power. `facets_fork` are the triangles of all faces, where they are begun already; `bore_demands` the threads and fits of bores.
     Turning comes first, in setups of its own: raises `BadInput` where it comes later or the blank is none of revolution. `tabs` are those
-    that the plan leaves, in setups of these programs: what stands of them is measured and told, and counts as left by intention.
+    that the plan leaves, in setups of these programs: what stands of them is measured and told, and counts as left by intention. So does
+    what faces keep by their `allowances`; less than that on them is an error.
     """
     turning = in_order(programs)
     turned: TurnedWork | None = None
@@ -100,6 +107,7 @@ def prove(
         turned,
         bore_demands,
         tabs,
+        partial(layers_on, allowances, part=part),
     )
 
 
@@ -118,12 +126,14 @@ def prove_surfaces(
     turned: TurnedWork | None = None,
     bore_demands: Sequence[BoreDemand] = (),
     tabs: Sequence[PlannedTab] = (),
+    layers_over: LayersOver | None = None,
 ) -> Verdict:
     """Return the verdict as `prove` does, on faces given in each setup's frame (without a program: in the blank's).
 
     `facets` are the same faces as triangles, in the first setup's frame: without them no tool may lean. `unasked` are the tags of faces
     that nobody wants finished: they are in the way of tools, and material. `turned` is the turning before these programs, which has made
-    the blank what it is; `tabs` are left by intention. Raises `BadInput` for turning among them.
+    the blank what it is; `tabs` are left by intention, and `layers_over` returns what faces keep over samples. Raises `BadInput` for
+    turning among them.
     """
     refuse_turning(section for program in programs for section in program.sections)
     frames = [p.setup.frame for p in programs] or [blank.frame]
@@ -162,6 +172,14 @@ def prove_surfaces(
     if turned is not None:
         before = turned_faces(turned, samples, frames[0], len(surfaces[0].tag))
         findings += turned_findings(turned, samples, frames[0], surfaces[0].tag, material, settings)
+    layers = None
+    if layers_over is not None:
+        layers = layers_over(
+            samples=samples,
+            tags=surfaces[0].tag,
+            frame=frames[0],
+            progress=progress.part(0.8, 0.82),
+        )
     setup_frames = {p.setup.name: p.setup.frame for p in programs}
     tabs = [t for t in tabs if t.setup in setup_frames]
     whole = covered(
@@ -173,16 +191,17 @@ def prove_surfaces(
         tools,
         settings,
         planned_faces,
-        progress.part(0.8, 1.0),
+        progress.part(0.82, 1.0),
         machines if facets is not None else (),
         unasked,
         before,
         turned.before if turned is not None else None,
         on_tabs(samples, frames[0], tabs, setup_frames) if tabs else None,
+        layers,
     )
     findings += whole.findings
     if tabs:
-        walls = np.unique(surfaces[0].tag[samples.face[whole.on_purpose]])
+        walls = np.unique(surfaces[0].tag[samples.face[whole.on_tabs]])
         findings += tab_findings(measured(tabs, setup_frames, stock), walls)
     operations, blocks = progress.aside(
         lambda _: (

@@ -43,7 +43,7 @@ def rows_of(path, column):
     return places[np.append(True, np.diff(places) > 1e-6)]
 
 
-def left_on(path, tool, points):
+def total_allowance(path, tool, points):
     """Return how far points (n, 3) stand from a ball that went along all the cuts."""
     a, b = cuts(path).transpose(1, 0, 2) + np.array([0.0, 0.0, tool.radius])
     way = b - a
@@ -94,7 +94,7 @@ def test_scallops_on_waves_stay_below_what_is_wanted_and_nothing_is_gouged() -> 
     made, drive = planned(grid(height, n=160, high=(16.0, 16.0)), height=0.02)
     rng = np.random.default_rng(1)
     x, y = rng.uniform(2.0, 14.0, (2, 1500))
-    left = left_on(made.path, BALL, np.column_stack([x, y, height(x, y)]))
+    left = total_allowance(made.path, BALL, np.column_stack([x, y, height(x, y)]))
     assert left.max() < 1.1 * 0.02 and left.min() > -0.003
     tips = made.path.position[made.path.motion != Motion.RAPID]
     assert (tips[:, 2] - drive.skin.drop.drop(tips[:, :2], lower_side(BALL), -9.0)).min() > -1e-3
@@ -103,7 +103,7 @@ def test_scallops_on_waves_stay_below_what_is_wanted_and_nothing_is_gouged() -> 
 def test_an_allowance_is_kept_all_round() -> None:
     made, _ = planned(grid(lambda x, y: 0.5 * x, n=8, high=(10.0, 10.0)), allowance=0.3)
     at = np.array([[5.0, 5.0, 2.5]])
-    assert left_on(made.path, BALL, at) == pytest.approx([0.3], abs=0.006)
+    assert total_allowance(made.path, BALL, at) == pytest.approx([0.3], abs=0.006)
 
 
 def test_only_where_the_area_is_touched_is_cut_and_a_little_over_its_rim() -> None:

@@ -16,7 +16,7 @@ from trunnion.geometry.plane.region import EMPTY_REGION, Region
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.contract import StockHeights
-from trunnion.plan.freeform.keys import ALLOWANCE, BOTTOM, CELL, LAYER, number
+from trunnion.plan.freeform.keys import BOTTOM, CELL, KEPT, LAYER, number, total_allowance
 from trunnion.plan.freeform.lands import LAND, REST_LAND, land_drive
 from trunnion.plan.freeform.outline import outline_drive
 from trunnion.plan.freeform.roughing.heights import (
@@ -120,7 +120,7 @@ def _layers(
     operation: Operation, space: SurfaceSpace, stock: StockHeights, progress: Progress
 ) -> PlaneDrive:
     """Return layers over all of the part, as `layers_of`."""
-    allowance, cell = number(operation, ALLOWANCE), number(operation, CELL)
+    allowance, cell = total_allowance(operation), number(operation, CELL)
     low, high = _mapped_box(space, cell)
     tall = HeightMap.of(space.skin.drop, low, high, cell, allowance, progress)
     outside = space.around().minus(
@@ -150,7 +150,7 @@ def pocket_layers(
     progress: Progress,
 ) -> PlaneDrive:
     """Return layers within the area of a pocket, as `layers_of`, from its height map."""
-    chord = _chord(number(operation, ALLOWANCE))
+    chord = _chord(total_allowance(operation))
     return layers_of(
         operation,
         space,
@@ -180,7 +180,8 @@ def layers_of(
     (choice `LAYER`), each from the side that is cut already: every place is cut once on the way down and once on the way up, not at every
     step.
     """
-    allowance, bottom = number(operation, ALLOWANCE), number(operation, BOTTOM)
+    allowance = total_allowance(operation)
+    bottom = number(operation, BOTTOM) + number(operation, KEPT)
     top, radius = float(stock.heights.max()), operation.cutter.radius
     blank, around = space.blank_area(), space.around()
     depth = operation.data.depth

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.findings import Finding, error, face_tags, warning
 from trunnion.geometry.arrays import Bools
 from trunnion.model.tool import Tool
+from trunnion.plan.allowances import allowance_of
 from trunnion.plan.cutting.milling import CuttingSettings, cutting_data
 from trunnion.plan.freeform.cutters.choice import (
     NEGLIGIBLE,
@@ -116,10 +117,17 @@ def sharper_steps(
 
 
 def side_cutters(state: PanelPlanState, pocket: FreeformPocket) -> list[Tool]:
-    """Return the end mills and balls that come through a pocket's corners; of each size the shortest that is as long as it is deep."""
-    corner = number(pocket.feature, "corner_radius") * state.settings.corner_share
+    """Return the end mills and balls that come through a pocket's corners; of each size the shortest that is as long as it is deep.
+
+    Corners and fillets are by so much sharper as the pocket keeps on its walls.
+    """
+    kept = allowance_of(pocket.feature).wall_allowance
+    corner = max(number(pocket.feature, "corner_radius") - kept, 0.0) * state.settings.corner_share
     deep = pocket.top - pocket.bottom + state.settings.reach_clearance
-    return mills_and_balls(state, corner, deep)
+    tools = mills_and_balls(state, corner, deep)
+    if kept <= 0.0 or pocket.fillet <= 0.0:
+        return tools
+    return [t for t in tools if t.corner_radius <= pocket.fillet - kept] or tools
 
 
 def mills_and_balls(state: PanelPlanState, corner: float, deep: float) -> list[Tool]:

@@ -7,7 +7,7 @@ from trunnion import tolerance
 from trunnion.findings import Refused
 from trunnion.model.operation import Operation
 from trunnion.plan.contract import Scene
-from trunnion.plan.freeform.keys import ALLOWANCE, CELL, number
+from trunnion.plan.freeform.keys import CELL, number, total_allowance
 from trunnion.plan.freeform.roughing.layers import pocket_layers
 from trunnion.plan.freeform.surface_drives import space_from
 from trunnion.plan.panel.feasibility import adjacent
@@ -75,7 +75,7 @@ def _layers(
     operation: Operation, pocket: FreeformPocket, scene: Scene, progress: Progress
 ) -> PlaneDrive:
     curved = space_from(operation.direction, tolerance.CHORD, scene, progress)
-    allowance, cell = number(operation, ALLOWANCE), number(operation, CELL)
+    allowance, cell = total_allowance(operation), number(operation, CELL)
     area = pocket.layer_area()
     tall = scene.once(
         ("height map", operation.feature, allowance, cell),
