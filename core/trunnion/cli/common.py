@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion.findings import BadCall, BadInput, Finding, Severity, has_errors
-from trunnion.part.read.part_file import PartReading
 from trunnion.progress import Progress
-from trunnion.store.project_file import PROJECT_SUFFIX
+from trunnion.script.open_part import open_part
 
 if TYPE_CHECKING:
     from trunnion.model.session import Session
@@ -156,28 +155,16 @@ def open_session(
 
     The process that reads the part stays while the caller is `running`, and does work on it beside.
     """
-    if options.user_folder is not None and not options.user_folder.is_dir():
-        raise BadInput(
-            f"{options.user_folder}: no such folder of tools, materials, machines and plans"
-        )
-    words, progress = words_of(options), progress_of(options)
-    with ExitStack() as begun:
-        reading = None
-        if Path(options.part).suffix.lower() != PROJECT_SUFFIX:
-            reading = (running or begun).enter_context(
-                PartReading.of_file(options.part, solid=options.solid, stays=running is not None)
-            )
-        # While a process of its own reads the part, the program is loaded, and with its settings all families.
-        from trunnion.pipeline import Engine
-
-        engine = Engine(options.user_folder)
-        engine.settings()
-        session = engine.open(
-            options.part, solid=options.solid, reading=reading, progress=progress.part(0.0, 0.1)
-        )
-    session = engine.with_choices(session, words)
-    if options.fixtures:
-        session = engine.with_fixtures(session, options.fixtures, progress)
+    progress = progress_of(options)
+    engine, session = open_part(
+        options.part,
+        settings=words_of(options),
+        solid=options.solid,
+        fixtures=options.fixtures,
+        user_folder=options.user_folder,
+        progress=progress.part(0.0, 0.1),
+        running=running,
+    )
     if until is not None:
         session = engine.run(session, until, progress.part(0.1, 1.0), ahead)
     return engine, session

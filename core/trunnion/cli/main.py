@@ -11,8 +11,9 @@ import sys
 from importlib import import_module
 from typing import NoReturn
 
-from trunnion import __version__, registry
+from trunnion import registry
 from trunnion.findings import Cancelled, TrunnionError
+from trunnion.version import __version__
 
 DONE, PROBLEMS, BAD, CANCELLED = 0, 1, 2, 130
 

@@ -30,7 +30,7 @@ from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.report.picture_process import Ahead, Drawing, here
-from trunnion.settings import Value, checked, choose, declared
+from trunnion.settings import Declared, Value, checked, choose, declared, digest
 from trunnion.shop import load_shop
 from trunnion.shop.library import PlanLibrary, library_file
 from trunnion.store.project_file import PROJECT_SUFFIX
@@ -170,21 +170,26 @@ class Engine:
         with part.watched(progress):
             return part.mesh(part.view_chord)
 
+    @property
+    def catalogue_digest(self) -> str:
+        """A digest of the shop's catalogues and of its plan library: of all that plans are made from beside part and settings."""
+        return digest(self._shop.digest, [[p.name, p.digest] for p in self.library.plans()])
+
     def settings(self) -> dict[str, tuple[type, ...]]:
         """Return the groups of settings that each step declares."""
         return {step.name: step.settings() for step in STEP_TABLE}
+
+    def declared(self) -> tuple[Declared, ...]:
+        """Return every declared setting once."""
+        groups = dict.fromkeys(g for groups in self.settings().values() for g in groups)
+        return tuple(d for group in groups for d in declared(group))
 
     def with_choices(self, session: Session, words: Mapping[str, Value]) -> Session:
         """Return the session with settings chosen by key, `plane.rough.slot_feed` or `slot_feed` alone where only one is named so.
 
         Raises `BadInput` for a wrong key or value.
         """
-        known = {
-            d.key: d
-            for groups in self.settings().values()
-            for group in groups
-            for d in declared(group)
-        }
+        known = {d.key: d for d in self.declared()}
         values: dict[str, Value] = {}
         for key, value in words.items():
             if key not in known:

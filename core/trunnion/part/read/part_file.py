@@ -77,7 +77,7 @@ class PartReading:
         request = ReadRequest(
             file=file,
             path=path,
-            name=_stem(file),
+            name=part_name(file),
             digest=hashlib.sha256(data).hexdigest(),
             kind=kind,
             listed=listed,
@@ -146,7 +146,12 @@ def _unpacked(data: bytes, name: str, limits: ReadLimits) -> bytes:
     return plain
 
 
-def _stem(file: str) -> str:
+def part_name(file: str) -> str:
+    """Return the name of the part in a file: the file's own without the endings of part files.
+
+    >>> part_name("rib.stp.gz"), part_name("rib.2.STEP"), part_name("rib.2")
+    ('rib', 'rib.2', 'rib.2')
+    """
     name = file[:-3] if file.lower().endswith(".gz") else file
     stem, suffix = os.path.splitext(name)
     return stem if suffix.lower() in SUFFIXES else name
