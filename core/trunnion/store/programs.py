@@ -19,11 +19,25 @@ def write_programs(folder: str | Path, name: str, posted: Iterable[PostedFile]) 
     folder, files = Path(folder), checked_files(posted)
     try:
         folder.mkdir(parents=True, exist_ok=True)
+    except OSError as reason:
+        raise _not_writable(folder, reason) from None
+    remove_programs(folder, name)
+    for file in files:
+        write_text(folder / f"{name}.{file.suffix}", file.text)
+    return tuple(f"{name}.{file.suffix}" for file in files)
+
+
+def remove_programs(folder: Path, name: str) -> None:
+    """Remove every program of NAME from a folder, which need not be there; raise `BadInput` where one can't be removed."""
+    if not folder.is_dir():
+        return
+    try:
         for old in sorted(folder.iterdir()):
             if old.is_file() and is_program_of(name, old.name):
                 old.unlink()
     except OSError as reason:
-        raise BadInput(f"{folder}: can't be written to: {reason.strerror or reason}") from None
-    for file in files:
-        write_text(folder / f"{name}.{file.suffix}", file.text)
-    return tuple(f"{name}.{file.suffix}" for file in files)
+        raise _not_writable(folder, reason) from None
+
+
+def _not_writable(folder: Path, reason: OSError) -> BadInput:
+    return BadInput(f"{folder}: can't be written to: {reason.strerror or reason}")
