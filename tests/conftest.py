@@ -16,6 +16,7 @@ os.environ["TRUNNION_USER_FOLDER"] = str(Path(tempfile.gettempdir()) / "trunnion
 
 LONGEST_FIRST = (
     "test_cli_verify",
+    "test_cli_batch",
     "test_strategies",
     "test_dexels",
     "test_drop_cutter",

@@ -22,6 +22,7 @@ def test_the_settings_page_is_what_the_declarations_say(capsys):
         "README.md",
         "CONTRIBUTING.md",
         "docs/index.md",
+        "docs/batch.md",
         "docs/how-a-program-comes-about.md",
         "docs/verification.md",
     ],

@@ -22,10 +22,10 @@ count declared dialog display document drawing drawn edits engine example export
 gc gui handlers history html i18n icons identity info input interpreter job judge keys kind label
 language layout legend look main manual mapping members memory menus message metadata metric model
 notice number numbers offer owner painted palette pane parameters parser picker picture pipeline
-player plot preferences printed problem project properties query read readers reading record recovery reply
+player page plot preferences printed problem project properties query read readers reading record recovery reply
 report request requirement result role rules scene screen screenshots search selection severity
 shared sharing snapshot source state statements status storage store sync table text theme threads
-tracer transfer trunnion units view viewport welcome widgets window write writer writing written
+tracer transfer trunnion units version view viewport welcome widgets window write writer writing written
 xml
 """
 """Plain words of programs and windows."""
