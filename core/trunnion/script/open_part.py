@@ -12,13 +12,19 @@ from typing import TYPE_CHECKING
 
 from trunnion.findings import BadInput
 from trunnion.part.read.part_file import PartReading
-from trunnion.progress import NO_PROGRESS, Progress
+from trunnion.progress import NO_PROGRESS, Progress, Report
+from trunnion.script.recording import Recording
 from trunnion.settings import Value
 from trunnion.store.project_file import PROJECT_SUFFIX
 
 if TYPE_CHECKING:
     from trunnion.model.session import Session
     from trunnion.pipeline import Engine
+    from trunnion.script.program import PartProgram
+
+
+OPENED = 0.1
+"""Share of the work that opening is."""
 
 
 def open_part(
@@ -53,6 +59,40 @@ def open_part(
     if fixtures:
         session = engine.with_fixtures(session, fixtures, progress)
     return engine, session
+
+
+def open_program(
+    path: str | Path,
+    *,
+    settings: Mapping[str, Value] | None = None,
+    solid: int | None = None,
+    fixtures: Sequence[str] = (),
+    user_folder: str | Path | None = None,
+    report: Report | None = None,
+    running: ExitStack | None = None,
+) -> PartProgram:
+    """Return the program of a part or project file; `trunnion.open` says what is given, `open_part` what `running` is."""
+    progress, recording = Progress(report), Recording()
+    options = {
+        "settings": settings,
+        "solid": solid,
+        "fixtures": fixtures,
+        "user_folder": user_folder,
+    }
+    recording.opened(path, {k: v for k, v in options.items() if v or v == 0})
+    engine, session = open_part(
+        path,
+        settings=settings,
+        solid=solid,
+        fixtures=fixtures,
+        user_folder=Path(user_folder) if user_folder is not None else None,
+        progress=progress.part(0.0, OPENED),
+        running=running,
+    )
+    # Once the part is being read: with this the whole program is loaded.
+    from trunnion.script.program import PartProgram
+
+    return PartProgram(engine, session, recording, progress)
 
 
 def check_user_folder(folder: Path | None) -> None:
