@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion.findings import BadCall, BadInput, Finding, Severity, has_errors
-from trunnion.progress import Progress
-from trunnion.script.open_part import open_part
+from trunnion.progress import Progress, Report
+from trunnion.script import open_part
 
 if TYPE_CHECKING:
     from trunnion.model.session import Session
     from trunnion.pipeline import Engine
     from trunnion.report.picture_process import Ahead
+    from trunnion.script.program import PartProgram
 
 
 def part_command(
@@ -135,14 +136,18 @@ def face_tags_of(words: str, option: str) -> list[int]:
 
 def progress_of(options: argparse.Namespace) -> Progress:
     """Return progress that shows itself on a terminal's standard error, one line rewritten, and nothing elsewhere."""
+    return Progress(_report_of(options))
+
+
+def _report_of(options: argparse.Namespace) -> Report | None:
     if options.quiet or not sys.stderr.isatty():
-        return Progress()
+        return None
 
     def show(fraction: float, text: str) -> None:
         end = "\n" if fraction >= 1.0 else ""
         print(f"\r\x1b[K{fraction:4.0%} {text}", end=end, file=sys.stderr, flush=True)
 
-    return Progress(show)
+    return show
 
 
 def open_session(
@@ -156,7 +161,7 @@ def open_session(
     The process that reads the part stays while the caller is `running`, and does work on it beside.
     """
     progress = progress_of(options)
-    engine, session = open_part(
+    engine, session = open_part.open_part(
         options.part,
         settings=words_of(options),
         solid=options.solid,
@@ -168,6 +173,47 @@ def open_session(
     if until is not None:
         session = engine.run(session, until, progress.part(0.1, 1.0), ahead)
     return engine, session
+
+
+def add_record(made: argparse.ArgumentParser) -> None:
+    """Add the option that records what a command does as a script."""
+    made.add_argument(
+        "--record",
+        type=script_named,
+        default=None,
+        metavar="FILE.py",
+        help="append what is done to a Python script that does it again (docs/scripts.md)",
+    )
+
+
+def script_named(word: str) -> Path:
+    """Return the script that a word on the command line names."""
+    if not word.endswith(".py"):
+        raise argparse.ArgumentTypeError(f"a script's name ends in .py, not {word}")
+    return Path(word)
+
+
+def open_program(options: argparse.Namespace, running: ExitStack | None = None) -> PartProgram:
+    """Return the program of the part, recorded where a script is named; `running` as in `open_session`."""
+    if options.record is not None:
+        check_output(options.record.parent)
+    program = open_part.open_program(
+        options.part,
+        settings=words_of(options),
+        solid=options.solid,
+        fixtures=options.fixtures,
+        user_folder=options.user_folder,
+        report=_report_of(options),
+        running=running,
+    )
+    if options.record is not None:
+        program.record(options.record)
+    return program
+
+
+def given(**words: str) -> dict[str, str]:
+    """Return the words that are not empty."""
+    return {name: word for name, word in words.items() if word}
 
 
 def add_manual_edits(made: argparse.ArgumentParser) -> None:
@@ -189,20 +235,16 @@ def add_manual_edits(made: argparse.ArgumentParser) -> None:
     )
 
 
-def with_manual_edits(options: argparse.Namespace, engine: Engine, session: Session) -> Session:
-    """Return the session with the changes that the options of `add_manual_edits` say."""
-    from trunnion.pipeline.planning.patches import with_local, with_moved
-
+def do_manual_edits(options: argparse.Namespace, program: PartProgram) -> None:
+    """Make the changes to a program that the options of `add_manual_edits` say."""
     for word in options.moves:
         faces, equals, group = word.partition("=")
         if not equals or not all(f.isdecimal() for f in listed(faces)):
             raise BadCall(f"--move wants FACE,...=ID, not {word}")
-        session = with_moved(
-            engine, session, map(int, listed(faces)), "" if group == "new" else group
-        )
+        program.move_faces(map(int, listed(faces)), "" if group == "new" else group)
     for ids, value in ((options.local, True), (options.not_local, False)):
-        session = with_local(session, listed(ids), value) if ids else session
-    return session
+        if ids:
+            program.set_local(listed(ids), value)
 
 
 def dropped_words(tags: Sequence[int]) -> str:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from trunnion.cli.common import check_output, open_session, part_command, show_json
+from trunnion.cli.common import add_record, check_output, open_program, part_command, show_json
 from trunnion.findings import BadCall, BadInput
 
 
@@ -40,13 +40,12 @@ def add(commands: Any) -> None:
     made.add_argument(
         "--out", type=Path, required=True, metavar="FILE", help="project to write (.trunnion)"
     )
+    add_record(made)
     made.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Make the cut, write the project and report which faces there are now."""
-    from trunnion.geometry.cut import curve_cut, plane_cut
-    from trunnion.pipeline.planning.patches import with_cut
     from trunnion.store.project_file import PROJECT_SUFFIX
 
     if (options.plane is None) == (not options.place):
@@ -56,17 +55,16 @@ def run(options: argparse.Namespace) -> int:
             f"{options.out}: a cut is kept in a project; name it {options.out.stem}{PROJECT_SUFFIX}"
         )
     check_output(options.out.parent)
-    engine, session = open_session(options, None)
-    assert session.part is not None
-    cut = (
-        plane_cut(options.face, tuple(options.plane[:3]), tuple(options.plane[3:]))
-        if options.plane
-        else curve_cut(options.face, tuple(tuple(p) for p in options.place))
-    )
-    after = with_cut(engine, session, cut)
-    assert after.part is not None
-    made = [options.face, *range(session.part.n_faces + 1, after.part.n_faces + 1)]
-    engine.save(after, options.out)
+    program = open_program(options)
+    before = program.session.part
+    if options.plane:
+        program.cut_by_plane(options.face, options.plane[:3], options.plane[3:])
+    else:
+        program.cut_by_curve(options.face, options.place)
+    after = program.session.part
+    assert before is not None and after is not None
+    made = [options.face, *range(before.n_faces + 1, after.n_faces + 1)]
+    program.save(options.out)
     if options.json:
         show_json({"file": str(options.out), "faces": made})
     else:

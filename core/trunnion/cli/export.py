@@ -8,15 +8,16 @@ from typing import Any
 
 from trunnion.cli.common import (
     add_manual_edits,
+    add_record,
     check_output,
+    do_manual_edits,
     dropped_words,
     exit_code,
     listed,
-    open_session,
+    open_program,
     part_command,
     show_findings,
     show_json,
-    with_manual_edits,
 )
 from trunnion.findings import BadInput
 
@@ -43,21 +44,23 @@ def add(commands: Any) -> None:
         help="file to write (.igs, .iges, .step, .stp)",
     )
     add_manual_edits(made)
+    add_record(made)
     made.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the faces and report how many they are."""
-    from trunnion.pipeline.planning.patches import dropped, export, tags_of
+    from trunnion.pipeline.planning.patches import dropped
 
     if not options.out.parent.is_dir():
         raise BadInput(f"{options.out}: there is no folder {options.out.parent}")
     check_output(options.out.parent)
-    engine, session = open_session(options, "recognize")
-    session = with_manual_edits(options, engine, session)
+    program = open_program(options)
+    program.run("recognize")
+    do_manual_edits(options, program)
     what = listed(options.groups)
-    tags = tags_of(session, what)
-    export(engine, session, what, options.out)
+    tags = program.export(what, options.out)
+    session = program.session
     assert session.recognition is not None
     apart = [t for t in dropped(session.recognition) if t not in tags]
     if options.json:

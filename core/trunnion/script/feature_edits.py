@@ -1,10 +1,11 @@
-"""Edits of features by a person: other faces, demands on holes, groups of patches. Recognition keeps them when it runs again."""
+"""Edits of features by a person: other faces, material they keep, demands on holes, groups of patches. Recognition keeps them when it runs again."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from trunnion.pipeline.planning import face_edits, patches
+from trunnion.pipeline.planning.allowances import with_feature_allowance
 from trunnion.pipeline.planning.hole_demands import with_hole_demand
 from trunnion.plan.holes.demand import fit_demand, thread_demand
 from trunnion.script.recording import recorded
@@ -44,6 +45,16 @@ class FeatureEdits(ProgramState):
         """Make a feature of a kind of faces, taken from the features that have them."""
         self.session = face_edits.with_feature(
             self.engine, self.run(RECOGNIZED), kind, tuple(faces)
+        )
+
+    @recorded
+    def keep(
+        self, features: Iterable[str], *, walls: float | None = None, floors: float | None = None
+    ) -> None:
+        """Have features keep so many mm on their walls, and on floors or tops, when the program has run; 0 takes it away."""
+        self.run(RECOGNIZED)
+        self.session = with_feature_allowance(
+            self.session, tuple(features), wall_allowance=walls, floor_allowance=floors
         )
 
     @recorded

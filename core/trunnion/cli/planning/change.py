@@ -4,31 +4,25 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trunnion import registry
 from trunnion.cli.common import (
+    add_record,
     check_output,
     exit_code,
     face_tags_of,
-    open_session,
+    open_program,
     pairs_of,
     part_command,
-    progress_of,
     show_findings,
     show_json,
 )
 from trunnion.cli.planning.operations import operation_dict, operation_table
 from trunnion.findings import BadCall
-from trunnion.registry import STRATEGIES
-from trunnion.settings import choose
 
 if TYPE_CHECKING:
-    from trunnion.model.process import ProcessTree
-    from trunnion.model.session import Session
-    from trunnion.pipeline import Engine
+    from trunnion.script.program import PartProgram
 
 
 def add(commands: Any) -> None:
@@ -87,6 +81,7 @@ def add(commands: Any) -> None:
     made.add_argument(
         "--out", type=Path, required=True, metavar="FILE", help="project to write (.trunnion)"
     )
+    add_record(made)
     made.set_defaults(run=run)
 
 
@@ -109,11 +104,11 @@ def run(options: argparse.Namespace) -> int:
     if options.out.suffix.lower() != PROJECT_SUFFIX:
         raise BadCall(f"--out wants a file that ends in {PROJECT_SUFFIX}, not {options.out}")
     check_output(options.out.parent)
-    engine, session = open_session(options, "optimize")
-    session, id = _changed(options, own, engine, session)
+    program = open_program(options)
+    id = _change(options, own, program)
     # The peak of the load follows the new data.
-    session = engine.run(session, "optimize", progress_of(options))
-    engine.save(session, options.out)
+    session = program.run("optimize")
+    program.save(options.out)
     assert session.process is not None
     changed = next((o for o in session.process.operations if o.id == id), None)
     if options.json:
@@ -128,51 +123,27 @@ def run(options: argparse.Namespace) -> int:
     return exit_code(session.findings())
 
 
-def _changed(
-    options: argparse.Namespace, own: Mapping[str, str], engine: Engine, session: Session
-) -> tuple[Session, str]:
-    """Return the session with all that the options say of an operation, and the id of the one that they say it of."""
-    from trunnion.pipeline.planning.guide_faces import with_guide_faces
-    from trunnion.plan.manual.operation_change import OperationChange, check_known
-    from trunnion.plan.manual.operation_copy import with_copy, with_copy_on
-    from trunnion.plan.manual.operation_order import with_operation_before
-    from trunnion.plan.manual.operation_state import with_own_choices, with_suppressed
-
-    process, id = _process(session), options.operation
-    check_known(process, id)
+def _change(options: argparse.Namespace, own: Mapping[str, str], program: PartProgram) -> str:
+    """Do all that the options say to an operation and return the id of the one that it was done to."""
+    id: str = options.operation
     if options.delete:
-        return replace(session, process=process.without(id)), id
-    if options.on:
-        assert session.recognition is not None
-        process, id = with_copy_on(process, id, options.on, session.recognition)
-    elif options.copy:
-        process, id = with_copy(process, id)
-    if own:
-        group = registry.get(STRATEGIES, process.operation(id).strategy).settings
-        process = with_own_choices(process, id, own, group)
+        program.delete(id)
+        return id
+    if options.copy:
+        id = program.copy(id, options.on)
+    changes = {
+        "tool": options.tool,
+        "spindle": options.spindle,
+        "feed": options.feed,
+        "own": own,
+        "add_faces": face_tags_of(options.add_faces, "--add-faces"),
+        "leave_out": face_tags_of(options.leave_out, "--leave-out"),
+        "before": options.before,
+        "last": options.last,
+    }
+    given = {name: value for name, value in changes.items() if value}
     if options.suppress or options.resume:
-        process = with_suppressed(process, id, options.suppress)
-    if options.before:
-        check_known(process, options.before)
-    if options.before or options.last:
-        process = with_operation_before(process, id, options.before or None)
-    session = replace(session, process=process)
-    given = {"tool": options.tool, "spindle": options.spindle, "feed": options.feed}
-    if any(given.values()):
-        change = choose(OperationChange, {f"operation.{name}": v for name, v in given.items()})
-        session = engine.with_operation_change(session, id, change)
-    if options.add_faces or options.leave_out:
-        session = with_guide_faces(
-            engine,
-            session,
-            id,
-            add=face_tags_of(options.add_faces, "--add-faces"),
-            leave_out=face_tags_of(options.leave_out, "--leave-out"),
-            progress=progress_of(options),
-        )
-    return session, id
-
-
-def _process(session: Session) -> ProcessTree:
-    assert session.process is not None
-    return session.process
+        given["suppressed"] = options.suppress
+    if given:
+        program.change(id, **given)
+    return id

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
+    add_record,
     check_output,
     exit_code,
     listed,
-    open_session,
+    open_program,
     part_command,
     show_findings,
     show_json,
@@ -87,14 +88,12 @@ def add(commands: Any) -> None:
     made.add_argument(
         "--out", type=Path, required=True, metavar="FILE", help="project to write (.trunnion)"
     )
+    add_record(made)
     made.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Change the features, save the project and print those that a person changed."""
-    from trunnion.pipeline.planning import face_edits
-    from trunnion.pipeline.planning.allowances import with_feature_allowance
-    from trunnion.pipeline.planning.hole_demands import with_hole_demand
     from trunnion.store.project_file import PROJECT_SUFFIX
 
     demands, amounts = _demands(options), _amounts(options)
@@ -106,20 +105,25 @@ def run(options: argparse.Namespace) -> int:
     if options.out.suffix.lower() != PROJECT_SUFFIX:
         raise BadCall(f"--out wants a file that ends in {PROJECT_SUFFIX}, not {options.out}")
     check_output(options.out.parent)
-    engine, session = open_session(options, "recognize")
+    program = open_program(options)
+    program.run("recognize")
     for given in options.add:
-        session = face_edits.with_faces(engine, session, *_named(given))
+        program.add_faces(*_named(given))
     for given in options.take:
-        session = face_edits.with_faces_taken(engine, session, *_named(given))
+        program.take_faces(*_named(given))
     for given in options.merge:
-        session = face_edits.with_merged(engine, session, listed(given))
+        program.merge(listed(given))
     for given in options.make:
-        session = face_edits.with_feature(engine, session, *_named(given))
-    for field, ids, amount in amounts:
-        session = with_feature_allowance(session, ids, **{field: amount})
+        program.make_feature(*_named(given))
+    for where, ids, amount in amounts:
+        program.keep(ids, **{where: amount})
     for ids, demand in demands:
-        session = with_hole_demand(engine, session, ids, demand)
-    engine.save(session, options.out)
+        if demand.thread:
+            program.demand_thread(ids, demand.thread, demand.thread_depth)
+        else:
+            program.demand_fit(ids, demand.fit)
+    program.save(options.out)
+    session = program.session
     assert session.recognition is not None
     named = {id for ids, _ in demands for id in ids} | {id for _, ids, _ in amounts for id in ids}
     changed = [f for f in session.recognition if f.by_hand or f.id in named]
@@ -156,18 +160,18 @@ def _words(feature: Feature) -> str:
 
 
 def _amounts(options: argparse.Namespace) -> list[tuple[str, tuple[str, ...], float]]:
-    """Return what is to stay on features: the field of the allowance, the features and mm."""
+    """Return what is to stay on features: where, as `PartProgram.keep` calls it, the features and mm."""
     found = []
-    for field, option, given in (
-        *(("wall_allowance", "--keep-on-walls", g) for g in options.keep_on_walls),
-        *(("floor_allowance", "--keep-on-floors", g) for g in options.keep_on_floors),
+    for where, option, given in (
+        *(("walls", "--keep-on-walls", g) for g in options.keep_on_walls),
+        *(("floors", "--keep-on-floors", g) for g in options.keep_on_floors),
     ):
         ids, words = _features(given, "pocket-01=0.3")
         try:
             amount = float(words)
         except ValueError:
             raise BadInput(f"{option} {given}: {words or 'nothing'} is no amount in mm") from None
-        found.append((field, ids, amount))
+        found.append((where, ids, amount))
     return found
 
 

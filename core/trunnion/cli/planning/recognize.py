@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
     add_manual_edits,
+    add_record,
+    do_manual_edits,
     dropped_words,
     exit_code,
-    open_session,
+    open_program,
     part_command,
     show_findings,
     show_json,
     table,
-    with_manual_edits,
 )
 from trunnion.findings import Finding, Severity
 from trunnion.units import several
@@ -39,6 +40,7 @@ def add(commands: Any) -> None:
         help="write a project with the features, those changed by hand among them, as well",
     )
     add_manual_edits(made)
+    add_record(made)
     made.set_defaults(run=run)
 
 
@@ -46,8 +48,10 @@ def run(options: argparse.Namespace) -> int:
     """Print the features and what nothing explains."""
     from trunnion.pipeline.planning.patches import dropped
 
-    engine, session = open_session(options, "recognize")
-    session = with_manual_edits(options, engine, session)
+    program = open_program(options)
+    program.recognize()
+    do_manual_edits(options, program)
+    session = program.session
     part, found = session.part, session.recognition
     assert part is not None and found is not None
     apart, reasons = dropped(found), _reasons(found)
@@ -56,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
 
         write_features(session, options.xml)
     if options.save:
-        engine.save(session, options.save)
+        program.save(options.save)
     if options.json:
         show_json(
             {

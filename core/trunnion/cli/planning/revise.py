@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.cli.common import (
+    add_record,
     check_output,
     exit_code,
-    open_session,
+    open_program,
     part_command,
-    progress_of,
     show_findings,
     show_json,
 )
@@ -36,23 +36,21 @@ def add(commands: Any) -> None:
     made.add_argument(
         "--out", type=Path, required=True, metavar="FILE", help="project to write (.trunnion)"
     )
+    add_record(made)
     made.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Take up the revised part, plan as far as the project was planned, save, and print what came of it."""
-    from trunnion.pipeline.revision import revised
     from trunnion.store.project_file import PROJECT_SUFFIX
 
     if options.out.suffix.lower() != PROJECT_SUFFIX:
         raise BadCall(f"--out wants a file that ends in {PROJECT_SUFFIX}, not {options.out}")
     check_output(options.out.parent)
-    engine, session = open_session(options, None)
-    was_planned = session.process is not None
-    session = revised(engine, session, options.by, progress_of(options))
-    if was_planned:
-        session = engine.run(session, "optimize", progress_of(options))
-    engine.save(session, options.out)
+    program = open_program(options)
+    program.revise(options.by)
+    program.save(options.out)
+    session = program.session
     findings = session.findings()
     changes = [f for f in findings if f.code.startswith(CODES)]
     if options.json:

@@ -8,10 +8,11 @@ from typing import Any
 from trunnion import registry
 from trunnion.cli.common import (
     add_output,
+    add_record,
     check_output,
-    open_session,
+    given,
+    open_program,
     part_command,
-    progress_of,
     show_findings,
     show_json,
 )
@@ -31,20 +32,20 @@ def add(commands: Any) -> None:
         "--name", default="", help="name of the program and its files (default: the part's)"
     )
     made.add_argument("--date", default="", help="date for the programs' headers")
+    add_record(made)
     made.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:
     """Write the programs; a failed proof writes them as REJECTED."""
-    from trunnion.pipeline.writing import checked_name, write_programs
+    from trunnion.pipeline.writing import checked_name
 
     check_output(options.output)
     if options.name:
         checked_name(options.name)
-    _, session = open_session(options, "repair")
-    files = write_programs(
-        session, options.output, name=options.name, date=options.date, progress=progress_of(options)
-    )
+    program = open_program(options)
+    files = program.post(options.output, **given(name=options.name, date=options.date))
+    session = program.session
     if options.json:
         show_json(
             {

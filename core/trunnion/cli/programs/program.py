@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from trunnion.cli.common import (
     add_output,
+    add_record,
     check_output,
-    open_session,
+    given,
+    open_program,
     part_command,
     progress_of,
     show_findings,
@@ -47,6 +49,7 @@ def add(commands: Any) -> None:
         default="",
         help="date for the programs' headers; without it same input gives same bytes",
     )
+    add_record(made)
     made.set_defaults(run=run)
 
 
@@ -60,7 +63,8 @@ def run(options: argparse.Namespace) -> int:
     if options.name:
         checked_name(options.name)
     with PictureProcess() as pictures, ExitStack() as running:
-        engine, session = open_session(options, None, running=running)
+        program = open_program(options, running)
+        engine, session = program.engine, program.session
         progress = progress_of(options)
         session = engine.run(session, LAID, progress.part(*LAYING), pictures.ahead)
         session = _proven(options, engine, session, progress.part(LAYING[1], 1.0))
@@ -72,6 +76,8 @@ def run(options: argparse.Namespace) -> int:
             drawing=pictures.begin,
             progress=progress_of(options),
         )
+    words = given(name=options.name, date=options.date)
+    program.recording.act("write", (options.output,), words)
     seconds = {name: record.seconds for name, record in session.records.items()} | {
         "all": time.perf_counter() - began
     }
