@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -126,3 +129,25 @@ def test_how_far_the_process_is_is_reported(tmp_path):
 def test_the_process_works_in_the_folder_that_the_batch_was_started_in(tmp_path):
     processed(tmp_path, "open('here', 'w').close(); os.abort()")
     assert Path(tmp_path, "here").is_file() and os.getcwd() != str(tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(fcntl, "F_SETSIG"), reason="Linux alone sends the signal")
+def test_a_part_ends_with_its_batch_even_while_it_holds_the_interpreters_lock(tmp_path):
+    file = tmp_path / "process"
+    busy = (
+        "import os; from trunnion.batch.child import _end_with_batch; _end_with_batch()\n"
+        f"open({str(file)!r}, 'w').write(f'{{os.getpid()}}.')\nsum(range(1 << 50))"
+    )
+    batch = (
+        "import subprocess, sys\n"
+        f"subprocess.Popen([sys.executable, '-c', {busy!r}], stdin=subprocess.PIPE, start_new_session=True).wait()"
+    )
+    with subprocess.Popen([sys.executable, "-c", batch]) as parent:
+        end = time.monotonic() + PATIENCE_S
+        while not (file.is_file() and file.read_text().endswith(".")):
+            assert time.monotonic() < end and parent.poll() is None
+            time.sleep(0.05)
+        child = int(file.read_text()[:-1])
+        assert psutil.pid_exists(child)
+        parent.kill()
+    assert gone(child)
