@@ -12,6 +12,7 @@ from pathlib import Path
 
 from trunnion.findings import BadInput
 from trunnion.part.read.part_file import SUFFIXES, part_name
+from trunnion.store.project_file import PROJECT_SUFFIX
 
 _GZIPPED = ".gz"
 
@@ -88,7 +89,7 @@ def batch_parts(files: Sequence[str], known: Mapping[str, str]) -> tuple[BatchPa
 def _names(paths: Sequence[Path]) -> list[str]:
     """Return names of parts: with the file's ending behind where one folder has several so called, and with as many folders of the path
     before as tell them apart."""
-    own = [part_name(p.name) for p in paths]
+    own = [name_in(p) for p in paths]
     beside = _double([str(p.with_name(name)) for p, name in zip(paths, own, strict=True)])
     for n in beside:
         own[n] = f"{own[n]}-{paths[n].name[len(own[n]) :].strip('.').replace('.', '-')}"
@@ -98,6 +99,15 @@ def _names(paths: Sequence[Path]) -> list[str]:
             folders = paths[n].parent.parts[1:]
             names[n] = "-".join((*folders[-depth:], own[n]))
     return names
+
+
+def name_in(file: Path) -> str:
+    """Return the name of the part in a part or project file.
+
+    >>> name_in(Path("parts/rib.stp.gz")), name_in(Path("rib.trunnion"))
+    ('rib', 'rib')
+    """
+    return part_name(file.name.removesuffix(PROJECT_SUFFIX))
 
 
 def _double(names: Sequence[str]) -> list[int]:

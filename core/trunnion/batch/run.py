@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trunnion.batch.parts import BatchPart, batch_parts
+from trunnion.batch.parts import BatchPart, batch_parts, name_in
 from trunnion.batch.request import PartRequest, common_digest, file_digest
 from trunnion.batch.workers import BatchWorkers, PartProgress, at, local, usual_jobs
 from trunnion.findings import BadInput
@@ -22,7 +22,6 @@ from trunnion.model.part_result import (
     PartResult,
 )
 from trunnion.model.session import Session
-from trunnion.part.read.part_file import part_name
 from trunnion.report.batch_page import batch_page
 from trunnion.script.open_part import check_user_folder
 from trunnion.settings import Value, digest
@@ -118,7 +117,7 @@ class _Work:
         """Keep a part's result in the ledger and on the page; programs of an earlier run don't stay where there is no verdict now."""
         key = self._keys[result.folder]
         if result.verdict in WITHOUT_VERDICT:
-            remove_programs(self._batch.output / result.folder, part_name(Path(result.part).name))
+            remove_programs(self._batch.output / result.folder, name_in(Path(result.part)))
         self._entries[key] = LedgerEntry(
             file=key, digest=self._digests[result.folder], result=result
         )

@@ -56,7 +56,8 @@ def test_a_name_that_ledger_and_page_can_not_hold_is_refused(tree):
 
 
 def test_a_part_has_a_folder_of_its_name():
-    assert folders(["x/rib.step", "x/panel.step.gz"]) == ["rib", "panel"]
+    files = ["x/rib.step", "x/panel.step.gz", "x/web.trunnion"]
+    assert folders(files) == ["rib", "panel", "web"]
 
 
 def test_parts_of_one_name_have_as_many_folders_before_it_as_tell_them_apart():

@@ -41,7 +41,6 @@ def batch(tmp_path_factory, sample_part):
     shutil.copy(sample_part, folder / "one" / "block.step")
     (folder / "two" / "block.step").write_text("nonsense")
     prism("crash", folder / "one" / "crash.step")
-    prism("memory", folder / "one" / "memory.step")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setenv("PYTHONPATH", python_path())
@@ -69,7 +68,7 @@ def again(batch, monkeypatch, capsys, *options):
     monkeypatch.syspath_prepend(str(FOLDER))
     forget()
     try:
-        parts = ["one/block.step", "one/memory.step", "two/*.step"]
+        parts = ["one/block.step", "two/*.step"]
         code = main(["batch", *parts, "-o", "out", *MEMORY, *options])
     finally:
         monkeypatch.undo()
@@ -81,12 +80,11 @@ def test_each_part_has_its_own_end(batch):
     assert {part: row["verdict"] for part, row in batch.rows.items()} == {
         "one/block.step": "passed",
         "one/crash.step": "crashed",
-        "one/memory.step": "out of memory",
         "two/block.step": "refused",
     }
     assert batch.code == BAD
     assert "SIGABRT" in batch.rows["one/crash.step"]["note"]
-    assert len(batch.errors) == 3 and all(e.startswith("trunnion: ") for e in batch.errors)
+    assert len(batch.errors) == 2 and all(e.startswith("trunnion: ") for e in batch.errors)
 
 
 def test_the_good_part_has_its_figures_and_all_its_files(batch):
@@ -106,13 +104,13 @@ def test_a_crash_keeps_the_stack_it_happened_at(batch):
 
 def test_parts_of_one_name_have_folders_of_their_own(batch):
     folders = {row["folder"] for row in batch.rows.values()}
-    assert folders == {"one-block", "two-block", "crash", "memory"}
+    assert folders == {"one-block", "two-block", "crash"}
 
 
 def test_ledger_and_page_have_every_part(batch):
-    assert len(read_ledger(batch.out)) == 4
+    assert len(read_ledger(batch.out)) == 3
     page = (batch.out / PAGE_FILE).read_text()
-    assert "1 of 4 parts released" in page
+    assert "1 of 3 parts released" in page
     assert "one-block/block.report.html" in page and "one-block/block.features.png" in page
 
 
@@ -121,14 +119,10 @@ def test_the_same_call_takes_over_what_would_come_again(batch, monkeypatch, caps
     code, shown = again(batch, monkeypatch, capsys)
     head, *lines, end = shown.splitlines()
     assert code == BAD and (batch.out / "one-block" / "block.S1.nc").stat().st_mtime_ns == before
-    assert [line.split()[0] for line in lines] == [
-        "one/block.step",
-        "one/memory.step",
-        "two/block.step",
-    ]
+    assert [line.split()[0] for line in lines] == ["one/block.step", "two/block.step"]
     assert head.startswith("part") and all("as before" in line for line in lines)
-    assert end == f"1 of 3 parts released; out/{PAGE_FILE}"
-    assert len(read_ledger(batch.out)) == 4
+    assert end == f"1 of 2 parts released; out/{PAGE_FILE}"
+    assert len(read_ledger(batch.out)) == 3
 
 
 def test_a_part_that_changed_is_programmed_again_and_leaves_no_old_program(
@@ -198,6 +192,20 @@ def _listening():
     return [
         tuple(c.laddr) for c in psutil.Process().net_connections() if c.status == psutil.CONN_LISTEN
     ]
+
+
+@pytest.mark.long
+def test_a_part_that_bloats_is_ended_and_the_next_one_is_programmed(
+    tmp_path, sample_part, monkeypatch, capsys
+):
+    prism("memory", tmp_path / "parts" / "a.step")
+    shutil.copy(sample_part, tmp_path / "parts" / "b.step")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", python_path())
+    assert main(["batch", "parts", "-o", "out", "--json", "--jobs", "1", *MEMORY]) == BAD
+    rows = json.loads(capsys.readouterr().out)["parts"]
+    assert [row["verdict"] for row in rows] == ["out of memory", "passed"]
+    assert "1500 MB" in rows[0]["note"] and rows[0]["memory_mb"] > 1500
 
 
 def test_an_interrupt_leaves_the_ledger_and_no_process(tmp_path):
