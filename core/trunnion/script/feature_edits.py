@@ -1,4 +1,4 @@
-"""Edits of features by a person: other faces, material they keep, demands on holes, groups of patches. Recognition keeps them when it runs again."""
+"""Edits of features by a person: their faces, what they keep, demands on holes, groups of patches; recognition keeps them as well."""
 
 from __future__ import annotations
 

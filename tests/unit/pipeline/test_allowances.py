@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
+import trunnion
 from kept_parts import (
     FLOOR_KEPT,
     WALL_KEPT,
@@ -193,3 +194,14 @@ def test_it_is_typed_on_the_command_line(tmp_path, capsys):
     assert "thick is no amount in mm" in capsys.readouterr().err
     assert main(command) == 2
     assert "--keep-on-walls" in capsys.readouterr().err
+
+
+def test_a_script_lets_features_keep_material(tmp_path):
+    program = trunnion.open(
+        ribbed_file(tmp_path / "ribbed.step"), settings={"recognize.family": "panel"}
+    )
+    program.keep(["pocket-01"], walls=0.3)
+    program.keep(["pocket-01"], floors=0.2)
+    kept = allowance_of(program.session.recognition.feature("pocket-01"))
+    assert (kept.wall_allowance, kept.floor_allowance) == (0.3, 0.2)
+    assert "program.keep(['pocket-01'], floors=0.2)" in program.script()
