@@ -1,4 +1,5 @@
-"""Names to things that are imported only when wanted: families, kinds of part, planners, strategies, dialects, views, commands, data.
+"""Names to things that are imported only when wanted: families, kinds of part, planners, strategies, dialects, views, commands, formats of
+tool libraries, data.
 
 The names come from the entry points `trunnion.KIND` of installed packages, so a user's own package adds one without
 touching ours; the module behind a name is imported on the first `get`.
@@ -30,6 +31,8 @@ FIXES = "fixes"
 """Kinds of fixes that findings ask for: functions that change a process, by the kind's name."""
 COMMANDS = "commands"
 """Functions that add a command to the command line (a module's `add(commands)`), by the command's name."""
+TOOL_FORMATS = "tool_formats"
+"""Formats of tool libraries of other programs, by name."""
 RESOURCES = "resources"
 """Packages with data of their own, in folders like those of `trunnion_resources`."""
 KINDS = (
@@ -41,6 +44,7 @@ KINDS = (
     VIEWS,
     FIXES,
     COMMANDS,
+    TOOL_FORMATS,
     RESOURCES,
 )
 OWN_RESOURCES = "trunnion_resources"

@@ -36,6 +36,7 @@ GENERAL = (
     "programs.batch",
     "cut",
     "export",
+    "tools",
     "settings",
     "compile",
     "gui",

@@ -45,7 +45,7 @@ KINDS = (
     BUTTON,
     "form",
 )
-_WITHOUT_CORNER = ("drill", REAMER, BORING_BAR, TAP, THREAD_MILL, "form")
+WITHOUT_CORNER = ("drill", REAMER, BORING_BAR, TAP, THREAD_MILL, "form")
 """Forms whose entries give no corner radius."""
 _USE = {
     "taper": ("surface",),
@@ -58,6 +58,8 @@ _USE = {
     BUTTON: ("interrupted",),
 }
 """What a form is for unless its entry says so; that of a tap says which holes it is for."""
+_USE_ALONE = ("face", "rough", "finish")
+"""The same of other forms, of a cutter that belongs to no series."""
 ISO_GROUPS = ("P", "M", "K", "N", "S", "H")
 _LARGEST = 1000.0
 """mm: no length of a cutter or holder is larger."""
@@ -117,7 +119,7 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
     for full, entry in by_name(found).items():
         kind, name = full.split(" ", 1)
         for cutter in (
-            [_single(entry, name, holders)] if kind == "tool" else _series(entry, name, holders)
+            [cutter_of(entry, name, holders)] if kind == "tool" else _series(entry, name, holders)
         ):
             if cutter.tool.name in cutters:
                 raise entry.wrong(f"the cutter {cutter.tool.name} is given twice")
@@ -145,14 +147,15 @@ def _holder(entry: CatalogueEntry) -> Holder:
     return Holder(name=entry.name, rows=tuple((z0, r0, z1, r1) for z0, r0, z1, r1 in rows))
 
 
-def _single(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> Cutter:
+def cutter_of(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> Cutter:
+    """Return the cutter of a table [tool.NAME]; raise `BadInput` with the first fault."""
     kind = _kind(entry, END_MILL)
-    corner = 0.0 if kind in _WITHOUT_CORNER else entry.number("corner_radius", 0.0, _LARGEST)
+    corner = 0.0 if kind in WITHOUT_CORNER else entry.number("corner_radius", 0.0, _LARGEST)
     tool = _tool(entry, entry, kind, name, corner, holders)
     cutter = Cutter(
         tool=tool,
         suits=_suits(entry),
-        use=_use(entry, kind, ("face", "rough", "finish")),
+        use=_use(entry, kind, _USE_ALONE),
     )
     entry.done()
     return cutter
@@ -164,7 +167,7 @@ def _series(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> 
     made = []
     for size in entry.tables("sizes"):
         diameter = size.number("diameter", 0.0, _LARGEST)
-        corners = (0.0,) if kind in _WITHOUT_CORNER else size.numbers("corner_radii", 0.0, _LARGEST)
+        corners = (0.0,) if kind in WITHOUT_CORNER else size.numbers("corner_radii", 0.0, _LARGEST)
         for corner in corners:
             tool = _tool(entry, size, kind, f"{name} D{trimmed(diameter, 3)}", corner, holders)
             full = _full_name(name, size, tool)
@@ -188,7 +191,7 @@ def _size_name(tool: Tool) -> str:
         "taper": f"{corner} A{trimmed(tool.taper_angle, 3)}",
         "barrel": f"{corner} B{trimmed(tool.barrel_radius, 3)}",
         "t-slot": f"{corner} H{trimmed(tool.flute_length, 3)}",
-        **dict.fromkeys(_WITHOUT_CORNER, ""),
+        **dict.fromkeys(WITHOUT_CORNER, ""),
         THREAD_MILL: _pitch_name(tool),
     }.get(tool.form, corner)
 
@@ -219,6 +222,11 @@ def _thread_name(size: CatalogueEntry, tool: Tool) -> str:
     if not inches:
         raise size.wrong(f"thread is a size and its series, such as 1/4-20 UNC; got {thread!r}")
     return f"{series} {inches}"
+
+
+def usual_use(kind: str) -> tuple[str, ...]:
+    """Return what a cutter of a kind is for when its entry doesn't say it; nothing for a tap, whose entry must."""
+    return () if kind == TAP else _USE.get(kind, _USE_ALONE)
 
 
 def _use(entry: CatalogueEntry, kind: str, default: tuple[str, ...]) -> tuple[str, ...]:

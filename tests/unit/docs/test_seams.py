@@ -29,6 +29,8 @@ OTHER_WORDS = {
     "trunnion/geometry/facegraph.py": {"surface"},
     # a use of cutters, as catalogue files write it
     "trunnion/shop/cutters.py": {"surface"},
+    # a shape of FreeCAD's tools, and what its libraries call a place of the tool changer
+    "trunnion/shop/exchange/freecad.py": {"chamfer", "pocket"},
     # keys of operations' choices in saved processes: of drives on curved faces, which any planner makes
     "trunnion/plan/freeform/keys.py": {"surface."},
     "trunnion/plan/freeform/lands.py": {"surface."},
