@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 from random_cutters import CONTEXT, cutters
 from trunnion import registry
 from trunnion.findings import BadInput
-from trunnion.shop.cutters import Cutter
+from trunnion.shop.cutters import Cutter, load_cutters, load_holders
 from trunnion.shop.exchange import LossKind, ReadTools, WrittenTools
+from trunnion.shop.exchange.catalogue_text import foreign_holders, holders_text, tools_text
 from trunnion.shop.exchange.contract import WHOLE_TOOL
 
 FORMATS = tuple(
@@ -127,3 +128,35 @@ def test_a_library_comes_back_in_its_order_with_names_that_differ(name, suffix, 
     names = [c.tool.name for c in tools]
     twice = {n for n in names if names.count(n) > 1}
     assert twice <= {l.tool for l in done.losses if l.field in ("name", WHOLE_TOOL)}
+
+
+@given(tools=st.lists(cutters(), min_size=1, max_size=4))
+@settings(max_examples=25, deadline=None)
+def test_catalogue_files_give_back_the_tools_that_they_are_written_of(tools):
+    known = {c.tool.name for c in CONTEXT.cutters}
+    unique = {c.tool.name: c for c in tools if c.tool.name not in known}
+    holders = {c.tool.holder.name: c.tool.holder for c in unique.values()}
+    unique = {
+        n: c
+        for n, c in unique.items()
+        if c.tool.holder.name not in CONTEXT.holders
+        or c.tool.holder == CONTEXT.holders[c.tool.holder.name]
+    }
+    unique = {n: c for n, c in unique.items() if holders[c.tool.holder.name] == c.tool.holder}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        written = tuple(unique.values())
+        for kind, text in (
+            ("tools", tools_text(written, source="a\nb")),
+            ("holders", holders_text(foreign_holders(written, CONTEXT.holders))),
+        ):
+            (folder / kind).mkdir()
+            (folder / kind / "own.toml").write_text(text, encoding="utf-8")
+        found = {c.tool.name: c for c in load_cutters(load_holders(folder), folder)}
+    for cutter in written:
+        again = found[cutter.tool.name]
+        assert differing(cutter, again) <= {
+            "number",
+            *(["fit"] if cutter.tool.form == "boring-bar" else []),
+        }
+        assert again.tool.form == cutter.tool.form

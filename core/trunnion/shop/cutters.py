@@ -61,7 +61,7 @@ _USE = {
 _USE_ALONE = ("face", "rough", "finish")
 """The same of other forms, of a cutter that belongs to no series."""
 ISO_GROUPS = ("P", "M", "K", "N", "S", "H")
-_LARGEST = 1000.0
+LARGEST = 1000.0
 """mm: no length of a cutter or holder is larger."""
 _FEWEST, _MOST_TEETH = 1, 20
 _STEEPEST_HELIX = 60.0
@@ -87,7 +87,7 @@ class Cutter:
 def load_holders(user_folder: Path | None) -> dict[str, Holder]:
     """Return the holders by name."""
     return {
-        name: _holder(entry) for name, entry in by_name(entries("holders", user_folder)).items()
+        name: holder_of(entry) for name, entry in by_name(entries("holders", user_folder)).items()
     }
 
 
@@ -132,9 +132,10 @@ def load_cutters(holders: Mapping[str, Holder], user_folder: Path | None) -> tup
     )
 
 
-def _holder(entry: CatalogueEntry) -> Holder:
+def holder_of(entry: CatalogueEntry) -> Holder:
+    """Return the holder of a table [NAME]; raise `BadInput` with the first fault."""
     entry.text("title")
-    rows = entry.rows("rows", 4, 0.0, _LARGEST)
+    rows = entry.rows("rows", 4, 0.0, LARGEST)
     entry.done()
     if (
         rows[0][0] != 0.0
@@ -150,7 +151,7 @@ def _holder(entry: CatalogueEntry) -> Holder:
 def cutter_of(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> Cutter:
     """Return the cutter of a table [tool.NAME]; raise `BadInput` with the first fault."""
     kind = _kind(entry, END_MILL)
-    corner = 0.0 if kind in WITHOUT_CORNER else entry.number("corner_radius", 0.0, _LARGEST)
+    corner = 0.0 if kind in WITHOUT_CORNER else entry.number("corner_radius", 0.0, LARGEST)
     tool = _tool(entry, entry, kind, name, corner, holders)
     cutter = Cutter(
         tool=tool,
@@ -166,8 +167,8 @@ def _series(entry: CatalogueEntry, name: str, holders: Mapping[str, Holder]) -> 
     suits, use = _suits(entry), _use(entry, kind, ("rough", "finish"))
     made = []
     for size in entry.tables("sizes"):
-        diameter = size.number("diameter", 0.0, _LARGEST)
-        corners = (0.0,) if kind in WITHOUT_CORNER else size.numbers("corner_radii", 0.0, _LARGEST)
+        diameter = size.number("diameter", 0.0, LARGEST)
+        corners = (0.0,) if kind in WITHOUT_CORNER else size.numbers("corner_radii", 0.0, LARGEST)
         for corner in corners:
             tool = _tool(entry, size, kind, f"{name} D{trimmed(diameter, 3)}", corner, holders)
             full = _full_name(name, size, tool)
@@ -249,8 +250,8 @@ def _tool(
     holder_name = size.text("holder")
     if holder_name not in holders:
         raise size.wrong(f"holder {holder_name!r} is not in the catalogue of holders")
-    holder, stickout = holders[holder_name], size.number("stickout", 0.0, _LARGEST)
-    diameter = size.number("diameter", 0.0, _LARGEST)
+    holder, stickout = holders[holder_name], size.number("stickout", 0.0, LARGEST)
+    diameter = size.number("diameter", 0.0, LARGEST)
     end = "flat" if corner == 0.0 else "ball" if 2 * corner == diameter else "bull"
     try:
         return Tool(
@@ -259,10 +260,10 @@ def _tool(
             form=end if kind == END_MILL else kind,
             diameter=diameter,
             corner_radius=corner,
-            flute_length=size.number("flute_length", 0.0, _LARGEST),
-            neck_diameter=size.number("neck_diameter", 0.0, _LARGEST),
-            neck_length=size.number("neck_length", 0.0, _LARGEST),
-            shank_diameter=size.number("shank_diameter", 0.0, _LARGEST),
+            flute_length=size.number("flute_length", 0.0, LARGEST),
+            neck_diameter=size.number("neck_diameter", 0.0, LARGEST),
+            neck_length=size.number("neck_length", 0.0, LARGEST),
+            shank_diameter=size.number("shank_diameter", 0.0, LARGEST),
             stickout=stickout,
             gauge_length=stickout + holder.length,
             teeth=_given(series, size, "teeth").count("teeth", _FEWEST, _MOST_TEETH),
@@ -287,7 +288,7 @@ def _shape(series: CatalogueEntry, size: CatalogueEntry, kind: str) -> dict[str,
     if kind == "barrel":
         return {
             "barrel_radius": _given(series, size, "barrel_radius").number(
-                "barrel_radius", 0.0, _LARGEST
+                "barrel_radius", 0.0, LARGEST
             )
         }
     if kind == "drill":
@@ -298,20 +299,20 @@ def _shape(series: CatalogueEntry, size: CatalogueEntry, kind: str) -> dict[str,
         }
     if kind == REAMER:
         return {
-            "lead": _given(series, size, "lead").number("lead", 0.0, _LARGEST),
+            "lead": _given(series, size, "lead").number("lead", 0.0, LARGEST),
             "fit": _given(series, size, "fit").text("fit"),
         }
     if kind == BORING_BAR:
         return {
-            "lead": _given(series, size, "lead").number("lead", 0.0, _LARGEST),
-            "smallest": size.number("smallest", 0.0, _LARGEST),
+            "lead": _given(series, size, "lead").number("lead", 0.0, LARGEST),
+            "smallest": size.number("smallest", 0.0, LARGEST),
         }
     if kind == TAP:
         return _tap_shape(series, size)
     if kind == THREAD_MILL:
         return _thread_mill_shape(size)
     if kind == "form":
-        return {"outline": size.rows("outline", 3, -1.0, _LARGEST)}
+        return {"outline": size.rows("outline", 3, -1.0, LARGEST)}
     return {}
 
 
@@ -320,7 +321,7 @@ def _tap_shape(series: CatalogueEntry, size: CatalogueEntry) -> dict[str, Any]:
     pitch = _pitch(size, "tap")
     given = _given(series, size, "lead")
     if given.has("lead"):
-        return {"pitch": pitch, "lead": given.number("lead", 0.0, _LARGEST)}
+        return {"pitch": pitch, "lead": given.number("lead", 0.0, LARGEST)}
     threads = _given(series, size, "lead_threads").number("lead_threads", 0.0, _MOST_LEAD_THREADS)
     return {"pitch": pitch, "lead": threads * pitch}
 
@@ -329,8 +330,8 @@ def _thread_mill_shape(size: CatalogueEntry) -> dict[str, Any]:
     """Return the pitch of a thread mill's comb, or the range of pitches that its single tooth cuts."""
     if size.has("pitch_low") or size.has("pitch_high"):
         return {
-            "pitch_low": size.number("pitch_low", 0.0, _LARGEST),
-            "pitch_high": size.number("pitch_high", 0.0, _LARGEST),
+            "pitch_low": size.number("pitch_low", 0.0, LARGEST),
+            "pitch_high": size.number("pitch_high", 0.0, LARGEST),
         }
     return {"pitch": _pitch(size, "thread mill")}
 
@@ -341,7 +342,7 @@ def _pitch(size: CatalogueEntry, kind: str) -> float:
         raise size.wrong(f"a {kind} gives its pitch, either as pitch in mm or as threads_per_inch")
     if size.has("threads_per_inch"):
         return MM_PER_INCH / size.number("threads_per_inch", 1.0, _MOST_PER_INCH)
-    return size.number("pitch", 0.0, _LARGEST)
+    return size.number("pitch", 0.0, LARGEST)
 
 
 def _given(series: CatalogueEntry, size: CatalogueEntry, field: str) -> CatalogueEntry:

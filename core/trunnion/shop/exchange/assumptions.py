@@ -15,7 +15,16 @@ from trunnion.findings import BadInput
 from trunnion.model.tool import BORING_BAR, BUTTON, REAMER, TAP, THREAD_MILL, Holder
 from trunnion.model.tool.drill import point_height
 from trunnion.model.tool.lead import basic_minor_diameter
-from trunnion.shop.cutters import END_MILL, ISO_GROUPS, WITHOUT_CORNER, Cutter, cutter_of, usual_use
+from trunnion.shop.cutters import (
+    END_MILL,
+    ISO_GROUPS,
+    LARGEST,
+    WITHOUT_CORNER,
+    Cutter,
+    cutter_of,
+    holder_of,
+    usual_use,
+)
 from trunnion.shop.exchange.contract import (
     WHOLE_TOOL,
     ExchangeContext,
@@ -121,9 +130,12 @@ def _completed(
     taken: Collection[str],
 ) -> ToolResult:
     """Return a described tool made whole. `known` are the holders whose names are given away, `taken` the names of tools that are."""
-    filling = _Filling(dict(description.values), {})
-    why = description.refusal or _fill(filling, context, known)
-    cutter = None
+    filling = _Filling(dict(description.values), dict(description.assumed))
+    cutter, why = None, description.refusal
+    try:
+        why = why or _fill(filling, context, known)
+    except BadInput as reason:
+        why = str(reason)
     if not why:
         _name(filling, taken)
         try:
@@ -169,6 +181,8 @@ def _fill(filling: _Filling, context: ExchangeContext, known: Mapping[str, Holde
     filling.fill("form", END_MILL, _UNSAID)
     if not filling.has("diameter") or not filling.length("diameter") > 0.0:
         return "it gives no diameter above 0"
+    if filling.length("diameter") > LARGEST:
+        return f"its diameter is larger than {LARGEST:g} mm"
     wrong = _fill_shape(filling)
     if wrong:
         return wrong
@@ -290,6 +304,8 @@ def _fill_holder(filling: _Filling, context: ExchangeContext, known: Mapping[str
     """Fill in the holder: the one that is requested for, else that of the catalogue's cutter with the nearest shank."""
     own = filling.values.get("holder")
     if own is not None:
+        if own.name not in known:
+            check_holder(own)
         name = own.name
         tried = 1
         while name in known and known[name].rows != own.rows:
@@ -307,6 +323,12 @@ def _fill_holder(filling: _Filling, context: ExchangeContext, known: Mapping[str
     filling.values["holder"] = selected
     filling.assumed["holder"] = (selected.name, why)
     filling.assumed["holder_rows"] = (plain(selected.rows), why)
+
+
+def check_holder(holder: Holder) -> None:
+    """Raise `BadInput` for a holder that no catalogue file may hold."""
+    fields = {"title": holder.name, "rows": [list(row) for row in holder.rows]}
+    holder_of(CatalogueEntry(file="holder", name=holder.name, fields=fields))
 
 
 def _nearest(shank: float, context: ExchangeContext) -> Holder:

@@ -6,6 +6,7 @@ import math
 
 from trunnion import tolerance
 from trunnion.model.tool import Tool
+from trunnion.shop.exchange.description import ToolDescription
 
 Outline = tuple[tuple[float, float, float], ...]
 
@@ -28,6 +29,20 @@ def cone_outline(
     if flute_length - height <= tolerance.COINCIDENT:
         return (cone[0], (diameter / 2, flute_length, 0.0))
     return (*cone, (diameter / 2, flute_length, 0.0))
+
+
+def give_cone(description: ToolDescription, tip_diameter: float, angle: float) -> None:
+    """Give a described tool the outline of a cone of an angle over both sides (degrees) and what it is for, or say why it is none."""
+    values = description.values
+    values["form"], values["use"] = "form", ("countersink",)
+    diameter = float(values.get("diameter", 0.0))
+    if not (0.0 <= tip_diameter < diameter and 0.0 < angle < 180.0):
+        description.refusal = "it gives no cone: a tip below its diameter, and an angle of 0 to 180"
+        return
+    height = cone_height(tip_diameter, diameter, angle)
+    if float(values.get("flute_length", 0.0)) < height - tolerance.COINCIDENT:
+        description.assume("flute_length", height, "its edges reach up to where its cone ends")
+    values["outline"] = cone_outline(tip_diameter, diameter, angle, float(values["flute_length"]))
 
 
 def cone_of(tool: Tool) -> tuple[float, float] | None:

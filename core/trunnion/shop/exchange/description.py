@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from trunnion.findings import BadInput
-from trunnion.shop.exchange.contract import Loss, LossKind
+from trunnion.shop.exchange.contract import Loss, LossKind, Plain
 from trunnion.shop.exchange.fields import plain
 
 _EMPTY: tuple[Any, ...] = (None, "", 0, 0.0, False, [], {})
@@ -19,12 +19,13 @@ class ToolDescription:
     """One tool of a library.
 
     `source` names it in messages (a file with a line or an entry). `values` has our fields (`fields.fields_of`) as far as the file gives
-    them, lengths in mm and angles in degrees; `holder` is a `Holder` there, and `holder_rows` is not used. `refusal` says why it can't
-    be taken at all.
+    them, lengths in mm and angles in degrees; `holder` is a `Holder` there, and `holder_rows` is not used. `assumed` are those of them
+    that the file doesn't say outright, with the reason. `refusal` says why the tool can't be taken at all.
     """
 
     source: str
     values: dict[str, Any] = field(default_factory=dict)
+    assumed: dict[str, tuple[Plain, str]] = field(default_factory=dict)
     foreign: list[tuple[str, Any, str]] = field(default_factory=list)
     refusal: str = ""
 
@@ -32,6 +33,11 @@ class ToolDescription:
     def name(self) -> str:
         """What the file calls it, else its place in the file."""
         return str(self.values.get("name") or self.values.get("title") or self.source)
+
+    def assume(self, name: str, value: Any, why: str) -> None:
+        """Note a value that the file doesn't say outright."""
+        self.values[name] = value
+        self.assumed[name] = (plain(value), why)
 
     def ignore(self, word: str, value: Any, why: str = "the catalogue has no place for it") -> None:
         """Note a field of the other program that is not taken over, unless it says nothing."""

@@ -18,7 +18,7 @@ from trunnion.model.tool import REAMER, T_SLOT, TAP, THREAD_MILL, Tool
 from trunnion.model.tool.thread_mill import TIP_FLAT, is_comb
 from trunnion.shop.cutters import END_MILL, Cutter
 from trunnion.shop.exchange.assumptions import all_completed, read_tools
-from trunnion.shop.exchange.cone import cone_height, cone_of, cone_outline
+from trunnion.shop.exchange.cone import cone_of, give_cone
 from trunnion.shop.exchange.contract import ExchangeContext, Loss, LossKind, ReadTools, WrittenTools
 from trunnion.shop.exchange.description import ToolDescription, count, text
 from trunnion.shop.exchange.files import json_in, listed, read_bytes, table
@@ -181,10 +181,7 @@ def _described(found: dict[str, Any], source: str) -> ToolDescription:
         if teeth:
             values["teeth"] = teeth
     description.ignore("Length", _foreign_value(parameters.pop("Length", None)), _OVERALL)
-    try:
-        read(values, parameters, source)
-    except ValueError as reason:
-        description.refusal = str(reason)
+    read(description, parameters)
     for word, value in (*parameters.items(), *attributes.items()):
         description.ignore(word[:80], _foreign_value(value))
     return description
@@ -211,82 +208,85 @@ def _shape_named(found: dict[str, Any], source: str) -> str:
     return re.sub(r"[-_ ]", "", stem).lower()
 
 
-Values = dict[str, Any]
+Parameters = dict[str, Any]
 
 
-def _end_mill(values: Values, parameters: Values, source: str) -> None:
-    values["form"], values["corner_radius"] = END_MILL, 0.0
+def _end_mill(tool: ToolDescription, parameters: Parameters) -> None:
+    tool.values |= {"form": END_MILL, "corner_radius": 0.0}
 
 
-def _ball(values: Values, parameters: Values, source: str) -> None:
-    values["form"] = END_MILL
-    if "diameter" in values:
-        values["corner_radius"] = values["diameter"] / 2
+def _ball(tool: ToolDescription, parameters: Parameters) -> None:
+    tool.values["form"] = END_MILL
+    if "diameter" in tool.values:
+        tool.values["corner_radius"] = tool.values["diameter"] / 2
 
 
-def _bull(values: Values, parameters: Values, source: str) -> None:
+def _bull(tool: ToolDescription, parameters: Parameters) -> None:
+    """Read a corner radius, in older files as the radius of the flat between the corners."""
+    values = tool.values
     values["form"] = END_MILL
     flat = parameters.pop("FlatRadius", None)
     if "corner_radius" not in values and flat is not None and "diameter" in values:
-        values["corner_radius"] = values["diameter"] / 2 - length_in(flat, source, "FlatRadius")
+        radius = length_in(flat, tool.source, "FlatRadius")
+        values["corner_radius"] = values["diameter"] / 2 - radius
 
 
-def _drill(values: Values, parameters: Values, source: str) -> None:
-    values["form"] = "drill"
+def _drill(tool: ToolDescription, parameters: Parameters) -> None:
+    tool.values["form"] = "drill"
     if "TipAngle" in parameters:
-        values["point_angle"] = degrees_in(parameters.pop("TipAngle"), source, "TipAngle")
+        angle = degrees_in(parameters.pop("TipAngle"), tool.source, "TipAngle")
+        tool.values["point_angle"] = angle
 
 
-def _reamer(values: Values, parameters: Values, source: str) -> None:
-    values["form"] = REAMER
+def _reamer(tool: ToolDescription, parameters: Parameters) -> None:
+    tool.values["form"] = REAMER
 
 
-def _tap(values: Values, parameters: Values, source: str) -> None:
-    values["form"] = TAP
+def _tap(tool: ToolDescription, parameters: Parameters) -> None:
+    tool.values["form"] = TAP
 
 
-def _taper(values: Values, parameters: Values, source: str) -> None:
+def _taper(tool: ToolDescription, parameters: Parameters) -> None:
     """Read a taper with a ball end; its angle is over both sides."""
+    values = tool.values
     values["form"] = "taper"
     if "diameter" in values:
         values["corner_radius"] = values["diameter"] / 2
     if "TaperAngle" in parameters:
-        values["taper_angle"] = degrees_in(parameters.pop("TaperAngle"), source, "TaperAngle") / 2
+        angle = degrees_in(parameters.pop("TaperAngle"), tool.source, "TaperAngle")
+        values["taper_angle"] = angle / 2
 
 
-def _saw(values: Values, parameters: Values, source: str) -> None:
-    """Read a saw as a T-slot cutter; raise `ValueError` for one whose cap is lower than its blade."""
-    values["form"] = T_SLOT
-    values.setdefault("corner_radius", 0.0)
-    cap = [length_in(parameters.pop(w, "0 mm"), source, w) for w in ("CapDiameter", "CapHeight")]
-    if all(size > 0.0 for size in cap):
-        raise ValueError("it has a cap below its blade, which no kind of the catalogue has")
+def _saw(tool: ToolDescription, parameters: Parameters) -> None:
+    """Read a saw as a T-slot cutter, unless it has a cap that is lower than its blade."""
+    tool.values["form"] = T_SLOT
+    tool.values.setdefault("corner_radius", 0.0)
+    words = ("CapDiameter", "CapHeight")
+    if all(length_in(parameters.pop(w, "0 mm"), tool.source, w) > 0.0 for w in words):
+        tool.refusal = "it has a cap below its blade, which no kind of the catalogue has"
 
 
-def _thread_mill(values: Values, parameters: Values, source: str) -> None:
+def _thread_mill(tool: ToolDescription, parameters: Parameters) -> None:
     """Read a single tooth: its flat is an eighth of the finest pitch, its height that of the coarsest groove (ISO 68-1)."""
+    values = tool.values
     values["form"] = THREAD_MILL
     if "Crest" in parameters and "diameter" in values and "neck_diameter" in values:
-        flat = length_in(parameters["Crest"], source, "Crest")
+        flat = length_in(parameters["Crest"], tool.source, "Crest")
         height = (values["diameter"] - values["neck_diameter"]) / 2
         if flat > 0.0 and height > 0.0:
             parameters.pop("Crest")
-            values["pitch_low"], values["pitch_high"] = pitches_of(flat, height)
+            low, high = pitches_of(flat, height)
+            why = "worked out of the flat and the height of its tooth"
+            tool.assume("pitch_low", low, why)
+            tool.assume("pitch_high", high, why)
 
 
-def _cone(values: Values, parameters: Values, source: str) -> None:
-    """Read a countersink, chamfer mill or engraving point; raise `ValueError` for no cone."""
-    values["form"], values["use"] = "form", ("countersink",)
-    tip = length_in(parameters.pop("TipDiameter", "0 mm"), source, "TipDiameter")
-    if "CuttingEdgeAngle" not in parameters or "diameter" not in values:
-        raise ValueError("it gives no angle of its edges (CuttingEdgeAngle) or no diameter")
-    angle = degrees_in(parameters.pop("CuttingEdgeAngle"), source, "CuttingEdgeAngle")
-    diameter = values["diameter"]
-    if not (0.0 <= tip < diameter and 0.0 < angle < 180.0):
-        raise ValueError("the tip must be thinner than the diameter, the angle between 0 and 180")
-    height = cone_height(tip, diameter, angle)
-    values["flute_length"] = max(values.get("flute_length", 0.0), height)
-    values["outline"] = cone_outline(tip, diameter, angle, values["flute_length"])
+def _cone(tool: ToolDescription, parameters: Parameters) -> None:
+    """Read a countersink, chamfer mill or engraving point."""
+    angle = degrees_in(parameters.pop("CuttingEdgeAngle", 0.0), tool.source, "CuttingEdgeAngle")
+    give_cone(
+        tool, length_in(parameters.pop("TipDiameter", "0 mm"), tool.source, "TipDiameter"), angle
+    )
 
 
 def pitches_of(flat: float, height: float) -> tuple[float, float]:
@@ -302,7 +302,7 @@ _DEPTH = 5.0 / 8.0 * 0.75**0.5
 _EXTRA = TIP_FLAT / 2 * 3.0**0.5
 """How much deeper a tooth goes, over what its pitch is coarser than the one that its flat is for."""
 
-_READERS: Mapping[str, Callable[[Values, Values, str], None]] = {
+_READERS: Mapping[str, Callable[[ToolDescription, Parameters], None]] = {
     "endmill": _end_mill,
     "ballend": _ball,
     "bullnose": _bull,
