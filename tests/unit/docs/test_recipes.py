@@ -1,4 +1,4 @@
-"""CONTRIBUTING's recipe of a dialect does what it says; whole packages of one's own are in `test_own_family.py`."""
+"""CONTRIBUTING's recipes of a dialect and of a format of tools do what they say; whole packages are in `test_own_family.py`."""
 
 from __future__ import annotations
 
@@ -14,6 +14,11 @@ from parts import ROOT
 
 ENTRY_POINTS = """[trunnion.dialects]
 murmur = shop_extra:MurmurDialect
+"""
+
+
+TOOL_ENTRY_POINTS = """[trunnion.tool_formats]
+lines = tool_extra:LinesFormat
 """
 
 
@@ -68,6 +73,47 @@ def test_a_dialect_of_ones_own_writes_and_reads_with_its_words(own_package):
     assert "N10 G71\n" in text
     assert "G21" not in text
     assert same == "mur True"
+
+
+TOOLS_ROUND_TRIP = """
+from pathlib import Path
+
+from trunnion.shop.cutters import load_cutters, load_holders
+from trunnion.shop.exchange import ExchangeContext, format_of
+
+holders = load_holders(None)
+context = ExchangeContext(holders=holders, cutters=load_cutters(holders, None))
+drill = next(c for c in context.cutters if c.tool.name == "DR-K D8")
+path = Path("two.lines")
+done = format_of(path).write([drill], path, context)
+path.write_bytes(done.files[path])
+(again,) = format_of(path).read(path, context).cutters
+print(done.files[path].decode(), end="")
+print(again.tool.name, again.tool.diameter, sorted({l.field for l in done.losses})[:3])
+"""
+
+
+def test_a_format_of_tools_of_ones_own_reads_and_writes(tmp_path):
+    package = tmp_path / "tool_extra"
+    package.mkdir()
+    (package / "__init__.py").write_text(recipe("A format of tool libraries"))
+    info = tmp_path / "tool_extra-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: tool-extra\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(TOOL_ENTRY_POINTS)
+    path = [str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])]
+    said = subprocess.run(
+        [sys.executable, "-c", TOOLS_ROUND_TRIP],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(path)},
+        cwd=tmp_path,
+        check=True,
+    )
+    assert said.stdout.splitlines() == [
+        "8.0 DR-K D8",
+        "DR-K D8 8.0 ['centre_cutting', 'flute_length', 'form']",
+    ]
 
 
 def test_the_recipes_name_what_the_example_does():

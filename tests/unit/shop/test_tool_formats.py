@@ -351,7 +351,7 @@ BIT = '{"shape": "endmill.fcstd", "parameter": {"Diameter": %s}}'
         ("t.tbl", "T-1 P1 D5\n", "T can't be -1"),
         ("t.tbl", b"T1 P1 D5 ;\xe9\n", "not a text in UTF-8"),
         ("t.tbl", b"T1 P1 D5\0\n", "not a text"),
-        ("t.tbl", "hello world\n", "'hello' is not understood"),
+        ("t.tbl", "TOOLNO POCKET\n\n 1 1 0.5 0.125\n", "line 1: 'TOOLNO' is not understood"),
         ("t.fctb", BIT % "NaN", "NaN is no number"),
         ("t.fctb", BIT % "-5", "it gives no diameter above 0"),
         ("t.fctb", BIT % '"5 furlong"', "Diameter has the unit 'furlong'"),

@@ -35,6 +35,7 @@ from trunnion.shop.exchange.contract import (
 )
 from trunnion.shop.exchange.description import ToolDescription
 from trunnion.shop.exchange.fields import plain
+from trunnion.shop.exchange.scaling import without_noise
 from trunnion.shop.reading import CatalogueEntry
 from trunnion.units import trimmed
 
@@ -294,9 +295,10 @@ def _least_flutes(values: dict[str, Any]) -> float:
 def _neck(values: dict[str, Any]) -> float:
     diameter = float(values["diameter"])
     if values["form"] == TAP:
-        return BAR * max(basic_minor_diameter(diameter, float(values["pitch"])), 0.0)
+        core = basic_minor_diameter(diameter, float(values["pitch"]))
+        return without_noise(BAR * max(core, 0.0))
     if values["form"] == BORING_BAR:
-        return BAR * float(values["smallest"])
+        return without_noise(BAR * float(values["smallest"]))
     return diameter
 
 

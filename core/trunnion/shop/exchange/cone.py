@@ -7,6 +7,7 @@ import math
 from trunnion import tolerance
 from trunnion.model.tool import Tool
 from trunnion.shop.exchange.description import ToolDescription
+from trunnion.shop.exchange.scaling import without_noise
 
 Outline = tuple[tuple[float, float, float], ...]
 
@@ -39,7 +40,7 @@ def give_cone(description: ToolDescription, tip_diameter: float, angle: float) -
     if not (0.0 <= tip_diameter < diameter and 0.0 < angle < 180.0):
         description.refusal = "it gives no cone: a tip below its diameter, and an angle of 0 to 180"
         return
-    height = cone_height(tip_diameter, diameter, angle)
+    height = without_noise(cone_height(tip_diameter, diameter, angle))
     if float(values.get("flute_length", 0.0)) < height - tolerance.COINCIDENT:
         description.assume("flute_length", height, "its edges reach up to where its cone ends")
     values["outline"] = cone_outline(tip_diameter, diameter, angle, float(values["flute_length"]))

@@ -128,7 +128,7 @@ def _words(words: list[str], source: str) -> dict[str, float]:
         match = _WORD.fullmatch(word)
         if match is None:
             raise BadInput(
-                f"{source}: {word[:20]!r} is not understood; a table has T P D X Y Z A B C U V W I J Q with numbers"
+                f"{source}: {word[:20]!r} is not understood; since LinuxCNC 2.4 a table has T P D X Y Z A B C U V W I J Q with numbers"
             )
         letter, value = match[1].upper(), float(match[2])
         if letter in found:
