@@ -29,8 +29,9 @@ OTHER_WORDS = {
     "trunnion/geometry/facegraph.py": {"surface"},
     # a use of cutters, as catalogue files write it
     "trunnion/shop/cutters.py": {"surface"},
-    # a shape of FreeCAD's tools, and what its libraries call a place of the tool changer
-    "trunnion/shop/exchange/freecad.py": {"chamfer", "pocket"},
+    # what FreeCAD's libraries call a place of the tool changer, and one of its shapes of tools
+    "trunnion/shop/exchange/formats/freecad/library.py": {"pocket"},
+    "trunnion/shop/exchange/formats/freecad/shapes.py": {"chamfer"},
     # keys of operations' choices in saved processes: of drives on curved faces, which any planner makes
     "trunnion/plan/freeform/keys.py": {"surface."},
     "trunnion/plan/freeform/lands.py": {"surface."},

@@ -17,8 +17,8 @@ from trunnion.findings import BadCall, BadInput, Severity
 from trunnion.model.tool import Holder
 from trunnion.shop.cutters import Cutter
 from trunnion.shop.exchange import ExchangeContext, LossKind, ReadTools, findings_of, format_of
-from trunnion.shop.exchange.freecad import pitches_of
-from trunnion.shop.exchange.fusion import corner_excess
+from trunnion.shop.exchange.formats.freecad.shapes import pitches_of
+from trunnion.shop.exchange.formats.fusion.geometry import corner_excess
 
 LIBRARIES = Path(__file__).parents[2] / "tool_libraries"
 INCH = dataclasses.replace(CONTEXT, unit="inch")

@@ -6,20 +6,17 @@ assumption is safe (the pitch of a tap, the angle of a taper) the tool is left o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from trunnion import tolerance
 from trunnion.findings import BadInput
-from trunnion.model.tool import BORING_BAR, BUTTON, REAMER, TAP, THREAD_MILL, Holder
-from trunnion.model.tool.drill import point_height
-from trunnion.model.tool.lead import basic_minor_diameter
+from trunnion.model.tool import BORING_BAR, BUTTON, Holder
 from trunnion.shop.cutters import (
     END_MILL,
     ISO_GROUPS,
     LARGEST,
-    WITHOUT_CORNER,
     Cutter,
     cutter_of,
     holder_of,
@@ -30,33 +27,16 @@ from trunnion.shop.exchange.contract import (
     ExchangeContext,
     Loss,
     LossKind,
-    Plain,
     ReadTools,
 )
 from trunnion.shop.exchange.description import ToolDescription
 from trunnion.shop.exchange.fields import plain
-from trunnion.shop.exchange.scaling import without_noise
+from trunnion.shop.exchange.shape_assumptions import UNSAID, Filling, fill_lengths, fill_shape
 from trunnion.shop.reading import CatalogueEntry
 from trunnion.units import trimmed
 
-FLUTES = 2.0
-"""Flute length over diameter: no longer than short end mills and drills have it (DIN 6527, DIN 6537 short)."""
-POINT_ANGLE = 118.0
-"""Degrees: the longest of the usual points of drills (type N, DIN 1414)."""
 TEETH = 2
 """The fewest usual ones: feeds are given a tooth."""
-REAMER_LEAD = 0.1
-"""Lead of a reamer over its diameter; leads after DIN 212 are shorter."""
-TAP_LEAD = 5.0
-"""Lead of a tap in pitches: that of form B (DIN 2197), the longest of machine taps."""
-TAP_LEAD_SHARE = 0.5
-"""The most that a lead takes of a tap's thread."""
-NOSE = 0.2
-"""mm: the nose of a boring bar's insert, ISO 1832 corner 02."""
-BAR = 0.9
-"""Thickness of a boring bar, and of a tap's neck, over the bore that it goes into."""
-FIT = "H7"
-"""The class of holes that reamers are usually made for (DIN 1420)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,33 +46,6 @@ class ToolResult:
     cutter: Cutter | None
     losses: tuple[Loss, ...]
     why: str = ""
-
-
-@dataclass(slots=True)
-class _Filling:
-    """The values of one tool while what is missing is filled in."""
-
-    values: dict[str, Any]
-    assumed: dict[str, tuple[Plain, str]]
-
-    def has(self, name: str) -> bool:
-        return name in self.values
-
-    def fill(self, name: str, value: Any, why: str) -> None:
-        """Assume a value for a field that is missing."""
-        if name not in self.values:
-            self.correct(name, value, why)
-
-    def correct(self, name: str, value: Any, why: str) -> None:
-        """Assume a value for a field, whatever stands there."""
-        self.values[name] = value
-        self.assumed[name] = (plain(value), why)
-
-    def length(self, name: str) -> float:
-        return float(self.values[name])
-
-
-_UNSAID = "the file doesn't say it"
 
 
 def read_tools(descriptions: Iterable[ToolDescription], context: ExchangeContext) -> ReadTools:
@@ -131,7 +84,7 @@ def _completed(
     taken: Collection[str],
 ) -> ToolResult:
     """Return a described tool made whole. `known` are the holders whose names are given away, `taken` the names of tools that are."""
-    filling = _Filling(dict(description.values), dict(description.assumed))
+    filling = Filling(dict(description.values), dict(description.assumed))
     cutter, why = None, description.refusal
     try:
         why = why or _fill(filling, context, known)
@@ -177,29 +130,29 @@ def _made(values: dict[str, Any], source: str) -> Cutter:
     return replace(cutter, tool=replace(cutter.tool, number=int(values.get("number", 0))))
 
 
-def _fill(filling: _Filling, context: ExchangeContext, known: Mapping[str, Holder]) -> str:
+def _fill(filling: Filling, context: ExchangeContext, known: Mapping[str, Holder]) -> str:
     """Fill in what is missing; return why the tool can't be taken, or nothing."""
-    filling.fill("form", END_MILL, _UNSAID)
+    filling.fill("form", END_MILL, UNSAID)
     if not filling.has("diameter") or not filling.length("diameter") > 0.0:
         return "it gives no diameter above 0"
     if filling.length("diameter") > LARGEST:
         return f"its diameter is larger than {LARGEST:g} mm"
-    wrong = _fill_shape(filling)
+    wrong = fill_shape(filling)
     if wrong:
         return wrong
-    _fill_lengths(filling)
+    fill_lengths(filling)
     _fill_holder(filling, context, known)
     _fill_stickout(filling)
     filling.fill(
         "teeth",
         1 if filling.values["form"] in (BUTTON, BORING_BAR) else TEETH,
-        f"{_UNSAID}; few teeth give low feeds",
+        f"{UNSAID}; few teeth give low feeds",
     )
-    filling.fill("helix_angle", 0.0, _UNSAID)
+    filling.fill("helix_angle", 0.0, UNSAID)
     filling.fill(
         "centre_cutting",
         filling.values["form"] == "drill",
-        f"{_UNSAID}; such a tool enters from outside or by a ramp",
+        f"{UNSAID}; such a tool enters from outside or by a ramp",
     )
     filling.fill("suits", ISO_GROUPS, "the file doesn't say which materials it is for")
     filling.fill(
@@ -210,99 +163,7 @@ def _fill(filling: _Filling, context: ExchangeContext, known: Mapping[str, Holde
     return ""
 
 
-def _fill_shape(filling: _Filling) -> str:
-    """Fill in what only one kind has; return what no assumption is safe for, or nothing."""
-    kind = str(filling.values["form"])
-    if kind not in WITHOUT_CORNER:
-        filling.fill("corner_radius", 0.0, f"{_UNSAID}; taken for a sharp corner")
-    own: dict[str, Callable[[_Filling], str]] = {
-        "taper": lambda f: "" if f.has("taper_angle") else "it gives no taper angle",
-        "barrel": lambda f: "" if f.has("barrel_radius") else "it gives no radius of its flank",
-        "form": lambda f: "" if f.has("outline") else "it gives no outline",
-        "drill": _fill_drill,
-        REAMER: _fill_reamer,
-        BORING_BAR: _fill_boring_bar,
-        TAP: _fill_tap,
-        THREAD_MILL: _fill_thread_mill,
-    }
-    return own[kind](filling) if kind in own else ""
-
-
-def _fill_drill(filling: _Filling) -> str:
-    filling.fill("point_angle", POINT_ANGLE, _UNSAID)
-    return ""
-
-
-def _fill_reamer(filling: _Filling) -> str:
-    filling.fill("lead", REAMER_LEAD * filling.length("diameter"), _UNSAID)
-    filling.fill("fit", FIT, f"{_UNSAID}; usual for reamers")
-    return ""
-
-
-def _fill_boring_bar(filling: _Filling) -> str:
-    filling.fill(
-        "smallest", filling.length("diameter"), f"{_UNSAID}; taken for set to its diameter alone"
-    )
-    filling.fill("lead", NOSE, _UNSAID)
-    return ""
-
-
-def _fill_tap(filling: _Filling) -> str:
-    if not filling.has("pitch") or not filling.length("pitch") > 0.0:
-        return "it gives no pitch"
-    lead = TAP_LEAD * filling.length("pitch")
-    if filling.has("flute_length"):
-        lead = min(lead, TAP_LEAD_SHARE * filling.length("flute_length"))
-    filling.fill("lead", lead, f"{_UNSAID}; a long one, that of form B after DIN 2197")
-    return ""
-
-
-def _fill_thread_mill(filling: _Filling) -> str:
-    ranged = filling.has("pitch_low") and filling.has("pitch_high")
-    return "" if filling.has("pitch") or ranged else "it gives no pitch"
-
-
-def _fill_lengths(filling: _Filling) -> None:
-    """Fill in flutes, neck and shank; lengths that contradict each other are set right on the short side."""
-    values, diameter = filling.values, filling.length("diameter")
-    least = _least_flutes(values)
-    filling.fill(
-        "flute_length",
-        max(FLUTES * diameter, least),
-        f"{_UNSAID}; short for a tool of its diameter",
-    )
-    flutes = filling.length("flute_length")
-    filling.fill("neck_length", flutes, f"{_UNSAID}; taken for no neck")
-    if filling.length("neck_length") < flutes:
-        filling.correct("neck_length", flutes, "the file's neck ends below its flutes")
-    if not filling.has("neck_diameter"):
-        if values["form"] == THREAD_MILL and filling.length("neck_length") > flutes:
-            filling.correct("neck_length", flutes, "the file doesn't say how thick its neck is")
-        filling.fill("neck_diameter", _neck(values), _UNSAID)
-    filling.fill("shank_diameter", diameter, f"{_UNSAID}; taken for as thick as its diameter")
-
-
-def _least_flutes(values: dict[str, Any]) -> float:
-    """Return how long flutes must be at least for what is known of a tool's end."""
-    diameter = float(values["diameter"])
-    if values["form"] == "drill" and 0.0 < float(values["point_angle"]) <= 180.0:
-        return point_height(diameter, float(values["point_angle"])) + diameter
-    if values["form"] == "form":
-        return float(values["outline"][-1][1])
-    return 0.0
-
-
-def _neck(values: dict[str, Any]) -> float:
-    diameter = float(values["diameter"])
-    if values["form"] == TAP:
-        core = basic_minor_diameter(diameter, float(values["pitch"]))
-        return without_noise(BAR * max(core, 0.0))
-    if values["form"] == BORING_BAR:
-        return without_noise(BAR * float(values["smallest"]))
-    return diameter
-
-
-def _fill_holder(filling: _Filling, context: ExchangeContext, known: Mapping[str, Holder]) -> None:
+def _fill_holder(filling: Filling, context: ExchangeContext, known: Mapping[str, Holder]) -> None:
     """Fill in the holder: the one that is requested for, else that of the catalogue's cutter with the nearest shank."""
     own = filling.values.get("holder")
     if own is not None:
@@ -342,7 +203,7 @@ def _nearest(shank: float, context: ExchangeContext) -> Holder:
     return best.holder
 
 
-def _fill_stickout(filling: _Filling) -> None:
+def _fill_stickout(filling: Filling) -> None:
     """Fill in how far the tool stands out: by its gauge length where that is known, else as little as it can."""
     neck, holder = filling.length("neck_length"), filling.values["holder"]
     if not filling.has("stickout") and filling.has("gauge_length"):
@@ -350,7 +211,7 @@ def _fill_stickout(filling: _Filling) -> None:
         if rest >= neck:
             filling.correct("stickout", rest, "the gauge length less the height of the holder")
             return
-    filling.fill("stickout", neck, f"{_UNSAID}; the least that such a tool stands out")
+    filling.fill("stickout", neck, f"{UNSAID}; the least that such a tool stands out")
     if filling.length("stickout") < neck:
         filling.correct("stickout", neck, "the file's holder begins below the end of the neck")
     if filling.has("gauge_length"):
@@ -362,15 +223,15 @@ def _fill_stickout(filling: _Filling) -> None:
             )
 
 
-def _name(filling: _Filling, taken: Collection[str]) -> None:
+def _name(filling: Filling, taken: Collection[str]) -> None:
     """Give the tool a name that no other has, and a title."""
     values = filling.values
     if not values.get("name"):
         words = f"T{values['number']}" if values.get("number") else str(values["form"])
-        filling.correct("name", f"{words} D{trimmed(filling.length('diameter'), 3)}", _UNSAID)
+        filling.correct("name", f"{words} D{trimmed(filling.length('diameter'), 3)}", UNSAID)
     name, tried = str(values["name"]), 1
     while values["name"] in taken:
         tried += 1
         filling.correct("name", f"{name} ({tried})", "another tool of the file has its name")
     if not values.get("title"):
-        filling.correct("title", values["name"], f"{_UNSAID}; its name stands there")
+        filling.correct("title", values["name"], f"{UNSAID}; its name stands there")

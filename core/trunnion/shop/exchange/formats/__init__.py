@@ -1,0 +1,1 @@
+"""Formats of tool libraries: a module for each program, independent of the others."""
