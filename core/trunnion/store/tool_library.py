@@ -12,6 +12,7 @@ from trunnion.shop.cutters import Cutter, load_cutters, load_holders
 from trunnion.shop.exchange import ExchangeContext, Loss, LossKind, ReadTools, format_of
 from trunnion.shop.exchange.catalogue_text import foreign_holders, holders_text, tools_text
 from trunnion.shop.exchange.contract import WHOLE_TOOL
+from trunnion.shop.exchange.numbering import FreeNames
 from trunnion.shop.reading import SUFFIX
 from trunnion.store.atomic import write_bytes, write_text
 from trunnion.store.project import load_project
@@ -106,14 +107,10 @@ def _free_names(
     cutters: Iterable[Cutter], known: Iterable[Cutter]
 ) -> tuple[tuple[Cutter, ...], tuple[Loss, ...]]:
     """Return cutters under names that the catalogue doesn't have, and which got another one."""
-    taken = {c.tool.name for c in known}
+    names = FreeNames(c.tool.name for c in known)
     free, losses = [], []
     for cutter in cutters:
-        name, tried = cutter.tool.name, 1
-        while name in taken:
-            tried += 1
-            name = f"{cutter.tool.name} ({tried})"
-        taken.add(name)
+        name = names.take(cutter.tool.name)
         free.append(replace(cutter, tool=replace(cutter.tool, name=name)))
         if name != cutter.tool.name:
             losses.append(

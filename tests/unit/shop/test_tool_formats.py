@@ -432,6 +432,29 @@ def test_a_library_with_too_much_in_it_is_refused_before_it_is_taken_apart(tmp_p
     assert "larger than the 32 MB" in refusal(tmp_path, "l.json", b" " * (32 * 1024**2 + 1))
 
 
+def test_a_part_21_file_whose_references_spread_without_end_is_refused(tmp_path):
+    fan = ",".join(f"#{n}" for n in range(1000, 1100))
+    words = item("DC mm 5").replace(
+        "ENDSEC;END", f"#90=PROPERTY_VALUE_ASSOCIATION($,({fan}),#10,$,$);ENDSEC;END"
+    )
+    assert "leads to more than 64 entities" in refusal(tmp_path, "t.p21", words)
+
+
+def test_tools_of_one_name_and_holders_of_one_name_stay_apart(tmp_path):
+    entry = json.loads((LIBRARIES / "fusion" / "by-hand.json").read_text())["data"][0]
+    other = json.loads(json.dumps(entry))
+    other["holder"]["segments"][0]["height"] = 5.0
+    other["holder"]["gaugeLength"] = 58.0
+    other["geometry"]["assemblyGaugeLength"] = 108.0
+    found = read_text(tmp_path, "l.json", json.dumps({"data": [entry, other, entry, other]}))
+    assert [(c.tool.name, c.tool.holder.name) for c in found.cutters] == [
+        ("EM-10", "CAT40 ER32"),
+        ("EM-10 (2)", "CAT40 ER32 (2)"),
+        ("EM-10 (3)", "CAT40 ER32"),
+        ("EM-10 (4)", "CAT40 ER32 (2)"),
+    ]
+
+
 def test_a_format_is_found_by_ending_or_by_name():
     assert format_of(Path("a.FCTB")).name == "freecad"
     assert format_of(Path("a.txt"), "linuxcnc").name == "linuxcnc"

@@ -6,7 +6,7 @@ assumption is safe (the pitch of a tap, the angle of a taper) the tool is left o
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -31,6 +31,7 @@ from trunnion.shop.exchange.contract import (
 )
 from trunnion.shop.exchange.description import ToolDescription
 from trunnion.shop.exchange.fields import plain
+from trunnion.shop.exchange.numbering import FreeNames, HolderNames
 from trunnion.shop.exchange.shape_assumptions import UNSAID, Filling, fill_lengths, fill_shape
 from trunnion.shop.reading import CatalogueEntry
 from trunnion.units import trimmed
@@ -65,33 +66,42 @@ def all_completed(
     descriptions: Iterable[ToolDescription], context: ExchangeContext
 ) -> list[ToolResult]:
     """Return the described tools of a file made whole, in their order, with names that differ."""
-    done: list[ToolResult] = []
-    names: set[str] = set()
-    known = dict(context.holders)
-    for description in descriptions:
-        one = _completed(description, context, known, names)
-        if one.cutter is not None:
-            names.add(one.cutter.tool.name)
-            known[one.cutter.tool.holder.name] = one.cutter.tool.holder
-        done.append(one)
-    return done
+    library = _LibraryContext(context)
+    return [_completed(description, library) for description in descriptions]
 
 
-def _completed(
-    description: ToolDescription,
-    context: ExchangeContext,
-    known: Mapping[str, Holder],
-    taken: Collection[str],
-) -> ToolResult:
-    """Return a described tool made whole. `known` are the holders whose names are given away, `taken` the names of tools that are."""
+class _LibraryContext:
+    """What is known while the tools of one library are made whole: names that are given away, and the catalogue's holders by shank."""
+
+    def __init__(self, context: ExchangeContext) -> None:
+        self.names, self.holders = FreeNames(), HolderNames(context.holders)
+        self._selected = context.holders.get(context.holder)
+        tools = (c.tool for c in context.cutters if not c.tool.locked)
+        self._by_shank: dict[float, Holder] = {}
+        for tool in sorted(tools, key=lambda t: t.holder.name):
+            self._by_shank.setdefault(tool.shank_diameter, tool.holder)
+
+    def holder_for(self, shank: float) -> tuple[Holder, str]:
+        """Return the holder of a tool that comes without one, by the diameter of its shank in mm, and why it is this one."""
+        if self._selected is not None:
+            return self._selected, "as chosen; the file doesn't say it"
+        if not self._by_shank:
+            raise BadInput("the catalogue has no cutter whose holder could be assumed: name one")
+        nearest = min(self._by_shank, key=lambda s: (abs(s - shank), s))
+        why = "the file doesn't say it; what the catalogue holds the nearest shank with"
+        return self._by_shank[nearest], why
+
+
+def _completed(description: ToolDescription, library: _LibraryContext) -> ToolResult:
+    """Return a described tool made whole, under a name that no other tool of the library has."""
     filling = Filling(dict(description.values), dict(description.assumed))
     cutter, why = None, description.refusal
     try:
-        why = why or _fill(filling, context, known)
+        why = why or _fill(filling, library)
     except BadInput as reason:
         why = str(reason)
     if not why:
-        _name(filling, taken)
+        _name(filling)
         try:
             cutter = _made(filling.values, description.source)
         except BadInput as reason:
@@ -100,10 +110,15 @@ def _completed(
                 .removeprefix(f"{description.source}: ")
                 .removeprefix(f"{filling.values['name']}: ")
             )
-    name = cutter.tool.name if cutter else description.name
     if cutter is None:
-        left = Loss(kind=LossKind.OMITTED, tool=name, field=WHOLE_TOOL, value="", why=why)
+        left = Loss(
+            kind=LossKind.OMITTED, tool=description.name, field=WHOLE_TOOL, value="", why=why
+        )
         return ToolResult(None, (left,), why)
+    name = library.names.take(cutter.tool.name)
+    if name != cutter.tool.name:
+        filling.correct("name", name, "another tool of the file has its name")
+        cutter = replace(cutter, tool=replace(cutter.tool, name=name))
     assumed = tuple(
         Loss(kind=LossKind.ASSUMED, tool=name, field=field, value=value, why=reason)
         for field, (value, reason) in filling.assumed.items()
@@ -130,7 +145,7 @@ def _made(values: dict[str, Any], source: str) -> Cutter:
     return replace(cutter, tool=replace(cutter.tool, number=int(values.get("number", 0))))
 
 
-def _fill(filling: Filling, context: ExchangeContext, known: Mapping[str, Holder]) -> str:
+def _fill(filling: Filling, library: _LibraryContext) -> str:
     """Fill in what is missing; return why the tool can't be taken, or nothing."""
     filling.fill("form", END_MILL, UNSAID)
     if not filling.has("diameter") or not filling.length("diameter") > 0.0:
@@ -141,7 +156,7 @@ def _fill(filling: Filling, context: ExchangeContext, known: Mapping[str, Holder
     if wrong:
         return wrong
     fill_lengths(filling)
-    _fill_holder(filling, context, known)
+    _fill_holder(filling, library)
     _fill_stickout(filling)
     filling.fill(
         "teeth",
@@ -163,44 +178,27 @@ def _fill(filling: Filling, context: ExchangeContext, known: Mapping[str, Holder
     return ""
 
 
-def _fill_holder(filling: Filling, context: ExchangeContext, known: Mapping[str, Holder]) -> None:
-    """Fill in the holder: the one that is requested for, else that of the catalogue's cutter with the nearest shank."""
+def _fill_holder(filling: Filling, library: _LibraryContext) -> None:
+    """Fill in the holder of a tool without one; give a holder that comes with a tool a name that no other shape has."""
     own = filling.values.get("holder")
     if own is not None:
-        if own.name not in known:
+        if not library.holders.knows(own):
             check_holder(own)
-        name = own.name
-        tried = 1
-        while name in known and known[name].rows != own.rows:
-            tried += 1
-            name = f"{own.name} ({tried})"
+        name = library.holders.take(own)
         if name != own.name:
             filling.values["holder"] = replace(own, name=name)
             filling.assumed["holder"] = (name, "another holder has the file's name for it")
         return
-    if context.holder:
-        selected, why = context.holders[context.holder], "as chosen; the file doesn't say it"
-    else:
-        selected = _nearest(filling.length("shank_diameter"), context)
-        why = "the file doesn't say it; what the catalogue holds the nearest shank with"
-    filling.values["holder"] = selected
-    filling.assumed["holder"] = (selected.name, why)
-    filling.assumed["holder_rows"] = (plain(selected.rows), why)
+    holder, why = library.holder_for(filling.length("shank_diameter"))
+    filling.values["holder"] = holder
+    filling.assumed["holder"] = (holder.name, why)
+    filling.assumed["holder_rows"] = (plain(holder.rows), why)
 
 
 def check_holder(holder: Holder) -> None:
     """Raise `BadInput` for a holder that no catalogue file may hold."""
     fields = {"title": holder.name, "rows": [list(row) for row in holder.rows]}
     holder_of(CatalogueEntry(file="holder", name=holder.name, fields=fields))
-
-
-def _nearest(shank: float, context: ExchangeContext) -> Holder:
-    """Return the holder of the catalogue's milling or drilling cutter whose shank is nearest to one, mm."""
-    cutters = [c.tool for c in context.cutters if not c.tool.locked]
-    if not cutters:
-        raise BadInput("the catalogue has no cutter whose holder could be assumed: name one")
-    best = min(cutters, key=lambda t: (abs(t.shank_diameter - shank), t.holder.name))
-    return best.holder
 
 
 def _fill_stickout(filling: Filling) -> None:
@@ -223,15 +221,11 @@ def _fill_stickout(filling: Filling) -> None:
             )
 
 
-def _name(filling: Filling, taken: Collection[str]) -> None:
-    """Give the tool a name that no other has, and a title."""
+def _name(filling: Filling) -> None:
+    """Give a tool a name and a title where it has none."""
     values = filling.values
     if not values.get("name"):
         words = f"T{values['number']}" if values.get("number") else str(values["form"])
         filling.correct("name", f"{words} D{trimmed(filling.length('diameter'), 3)}", UNSAID)
-    name, tried = str(values["name"]), 1
-    while values["name"] in taken:
-        tried += 1
-        filling.correct("name", f"{name} ({tried})", "another tool of the file has its name")
     if not values.get("title"):
         filling.correct("title", values["name"], f"{UNSAID}; its name stands there")

@@ -77,10 +77,14 @@ def text(value: Any, source: str, word: str) -> str:
     """Return a text that a file gives, on one line and without what no text file may hold; raise `BadInput` for what is no text."""
     if not isinstance(value, str):
         raise BadInput(f"{source}: {word} must be a text; got {_short(value)}")
+    if len(value) > LONGEST_TEXT:
+        raise BadInput(f"{source}: {word} is longer than {LONGEST_TEXT} characters")
     encoded = value.encode("utf-8", "replace").decode("utf-8")
     return " ".join("".join(c if c.isprintable() else " " for c in encoded).split())
 
 
+LONGEST_TEXT = 2000
+"""Characters of a name or title."""
 _SHOWN = 40
 """Characters of a wrong value that a message shows."""
 

@@ -14,7 +14,7 @@ from trunnion.findings import BadInput
 from trunnion.shop.cutters import Cutter
 from trunnion.shop.exchange.assumptions import all_completed, read_tools
 from trunnion.shop.exchange.contract import ExchangeContext, ReadTools, WrittenTools
-from trunnion.shop.exchange.description import ToolDescription
+from trunnion.shop.exchange.description import ToolDescription, text
 from trunnion.shop.exchange.files import MOST_TOOLS, read_bytes, text_in
 from trunnion.shop.exchange.numbering import numbered
 from trunnion.shop.exchange.readback import lost
@@ -59,14 +59,14 @@ class LinuxCncFormat:
                     f"{path}: a table has room for {MOST_POCKETS} tools; got {len(cutters)}"
                 )
             lines.append(_line(cutter, number, pocket, context))
-        text = "".join(lines)
+        table = "".join(lines)
         requested = [
             replace(c, tool=replace(c.tool, number=n))
             for c, n in zip(cutters, numbers, strict=True)
         ]
-        again = all_completed(_described(text, str(path), context), context)
+        again = all_completed(_described(table, str(path), context), context)
         losses = (*invented, *lost(requested, again, self.title, _REASONS))
-        return WrittenTools(files={path: text.encode()}, losses=losses)
+        return WrittenTools(files={path: table.encode()}, losses=losses)
 
 
 _REASONS = {
@@ -83,12 +83,16 @@ def _line(cutter: Cutter, number: int, pocket: int, context: ExchangeContext) ->
 
 def _comment(name: str) -> str:
     """Return a name as a comment holds it: one line, cut to what LinuxCNC keeps."""
-    line = " ".join("".join(c if c.isprintable() else " " for c in name).split())
-    return line.encode("utf-8", "replace")[:LONGEST_COMMENT].decode("utf-8", "ignore").strip()
+    return (
+        text(name, "", "name")
+        .encode("utf-8", "replace")[:LONGEST_COMMENT]
+        .decode("utf-8", "ignore")
+        .strip()
+    )
 
 
-def _described(text: str, source: str, context: ExchangeContext) -> Iterator[ToolDescription]:
-    lines = text.split("\n")
+def _described(table: str, source: str, context: ExchangeContext) -> Iterator[ToolDescription]:
+    lines = table.split("\n")
     if len(lines) > MOST_TOOLS:
         raise BadInput(f"{source}: {len(lines)} lines are more than the {MOST_TOOLS} that are read")
     for n, line in enumerate(lines, 1):
@@ -104,7 +108,7 @@ def _tool(words: list[str], comment: str, source: str, context: ExchangeContext)
     description = ToolDescription(source=source)
     values = description.values
     values["number"] = int(found["T"])
-    name = " ".join("".join(c if c.isprintable() else " " for c in comment).split())
+    name = text(comment, source, "the comment")
     if name:
         values["name"] = name
     if found.get("D", 0.0) != 0.0:

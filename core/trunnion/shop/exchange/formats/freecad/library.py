@@ -29,6 +29,8 @@ TOOL, LIBRARY = ".fctb", ".fctl"
 _FILE_VERSION, _LIBRARY_VERSION = 2, 1
 _BITS = "Bit"
 """The folder beside that of libraries, which FreeCAD keeps the files of tools in."""
+_LONGEST_STEM = 80
+"""Characters of a file's name that come from its tool."""
 _STICKOUT = "btl-stickout"
 """An attribute that the add-on Better Tool Library gives a tool: how far it stands out of its holder."""
 _OVERALL = "the catalogue keeps what stands out of the holder, not the overall length"
@@ -116,14 +118,17 @@ def _written(data: dict[str, Any]) -> bytes:
 def _file_names(cutters: Sequence[Cutter]) -> list[str]:
     """Return a name of a file for each tool: that of the tool in letters that every system takes, numbered where two are alike."""
     names: list[str] = []
-    used = set()
+    used: set[str] = set()
+    tried: dict[str, int] = {}
     for cutter in cutters:
-        stem = re.sub(r"[^A-Za-z0-9.-]+", "_", cutter.tool.name).strip("._") or "tool"
-        stem, tried = stem[:80], 1
+        stem = (
+            re.sub(r"[^A-Za-z0-9.-]+", "_", cutter.tool.name).strip("._")[:_LONGEST_STEM] or "tool"
+        )
+        key = stem.lower()
         name = f"{stem}{TOOL}"
         while name.lower() in used:
-            tried += 1
-            name = f"{stem}-{tried}{TOOL}"
+            tried[key] = tried.get(key, 1) + 1
+            name = f"{stem}-{tried[key]}{TOOL}"
         used.add(name.lower())
         names.append(name)
     return names

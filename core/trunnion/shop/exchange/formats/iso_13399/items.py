@@ -39,7 +39,10 @@ def items_of(step: StepText, source: str) -> list[ToolItem]:
     if len(items) > MOST_TOOLS:
         raise BadInput(f"{source}: {len(items)} items are more than the {MOST_TOOLS} that are read")
     linked = False
-    for entity in step.of_types(ASSOCIATION):
+    associations = step.of_types(ASSOCIATION)
+    if len(associations) > _MOST_ASSOCIATIONS:
+        raise BadInput(f"{source}: more than the {_MOST_ASSOCIATIONS} values that are read")
+    for entity in associations:
         parameters = _parameters(entity, ASSOCIATION)
         if len(parameters) < 3:
             raise BadInput(f"{source}: #{entity.number} has too few parameters")
@@ -99,7 +102,7 @@ def _entity(step: StepText, number: int) -> StepEntity:
 def _reached(step: StepText, parameter: object, *types: str) -> list[int]:
     """Return the entities of some types that a parameter leads to by references, nearest first."""
     found: list[int] = []
-    front, seen = numbers_in(parameter), set[int]()
+    front, seen = _few(numbers_in(parameter)), set[int]()
     for _ in range(_DEEPEST):
         following: list[int] = []
         for number in front:
@@ -111,8 +114,20 @@ def _reached(step: StepText, parameter: object, *types: str) -> list[int]:
                 found.append(number)
             else:
                 following += [n for record in entity.records for n in numbers_in(record.parameters)]
-        front = following
+        front = _few(following)
     return found
+
+
+def _few(numbers: list[int]) -> list[int]:
+    """Return numbers of entities as they are; raise `BadInput` for more than an association has."""
+    if len(numbers) > _MOST_REACHED:
+        raise BadInput(f"an association of the file leads to more than {_MOST_REACHED} entities")
+    return numbers
+
+
+_MOST_REACHED = 64
+"""Entities that a value or an item names at each step: half a dozen in makers' files."""
+_MOST_ASSOCIATIONS = 200_000
 
 
 def _add_value(step: StepText, item: ToolItem, number: int, source: str) -> None:

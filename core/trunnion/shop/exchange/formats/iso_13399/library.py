@@ -22,7 +22,7 @@ from trunnion.shop.exchange.cone import cone_of, give_cone
 from trunnion.shop.exchange.contract import ExchangeContext, ReadTools, WrittenTools
 from trunnion.shop.exchange.description import ToolDescription, text
 from trunnion.shop.exchange.fields import kind_of
-from trunnion.shop.exchange.files import read_bytes, text_in
+from trunnion.shop.exchange.files import MOST_BRACKETS, read_bytes, text_in
 from trunnion.shop.exchange.formats.iso_13399.items import (
     ASSOCIATION,
     OWN,
@@ -83,6 +83,8 @@ def _described(data: bytes, source: str, context: ExchangeContext) -> Iterator[T
         raise BadInput(f"{source}: not a Part 21 file: it doesn't begin with ISO-10303-21")
     if _END not in words[-4096:]:
         raise BadInput(f"{source}: the file is cut off: its end mark {_END} is missing")
+    if words.count("(") > MOST_BRACKETS:
+        raise BadInput(f"{source}: more than the {MOST_BRACKETS} lists that are read")
     for item in items_of(StepText(data, TYPES), source):
         yield _tool(item, f"{source}: #{item.number}", context)
 
