@@ -19,6 +19,7 @@ LONGEST_FIRST = (
     "test_cli_batch",
     "test_strategies",
     "test_dexels",
+    "test_tool_exchange",
     "test_drop_cutter",
     "test_blank",
     "test_whole_line",

@@ -165,6 +165,14 @@ def test_a_bullnose_of_older_files_gives_the_flat_between_its_corners(tmp_path):
     assert cutter.tool.corner_radius == 1.5
 
 
+def test_what_a_kind_of_tool_does_not_have_is_ignored(tmp_path):
+    sizes = {"Diameter": "6 mm", "Pitch": "1 mm", "CornerRadius": "0.5 mm"}
+    bit = {"shape": "endmill.fcstd", "name": "m", "parameter": sizes}
+    found = read_text(tmp_path, "m.fctb", json.dumps(bit))
+    assert found.cutters[0].tool.form == "bull"
+    assert fields(found, LossKind.IGNORED, "m") == {"pitch"}
+
+
 def test_a_tap_without_a_pitch_is_left_out(tmp_path):
     bit = {"shape": "tap.fcstd", "parameter": {"Diameter": '0.375 "', "Pitch": "0.000 in"}}
     assert "it gives no pitch" in refusal(tmp_path, "tap.fctb", json.dumps(bit))

@@ -30,7 +30,7 @@ from trunnion.shop.exchange.contract import (
     ReadTools,
 )
 from trunnion.shop.exchange.description import ToolDescription
-from trunnion.shop.exchange.fields import plain
+from trunnion.shop.exchange.fields import ONLY, plain
 from trunnion.shop.exchange.numbering import FreeNames, HolderNames
 from trunnion.shop.exchange.shape_assumptions import UNSAID, Filling, fill_lengths, fill_shape
 from trunnion.shop.reading import CatalogueEntry
@@ -94,6 +94,7 @@ class _LibraryContext:
 
 def _completed(description: ToolDescription, library: _LibraryContext) -> ToolResult:
     """Return a described tool made whole, under a name that no other tool of the library has."""
+    _ignore_of_other_kinds(description)
     filling = Filling(dict(description.values), dict(description.assumed))
     cutter, why = None, description.refusal
     try:
@@ -124,6 +125,16 @@ def _completed(description: ToolDescription, library: _LibraryContext) -> ToolRe
         for field, (value, reason) in filling.assumed.items()
     )
     return ToolResult(cutter, (*assumed, *description.ignored(name)))
+
+
+def _ignore_of_other_kinds(description: ToolDescription) -> None:
+    """Take out what a file says of a tool and its kind doesn't have here, such as the pitch of an end mill."""
+    kind = description.values.get("form", END_MILL)
+    for name, kinds in ONLY.items():
+        if name in description.values and kind not in kinds:
+            description.assumed.pop(name, None)
+            why = f"the catalogue has none of kind {kind}"
+            description.ignore(name, description.values.pop(name), why)
 
 
 def _made(values: dict[str, Any], source: str) -> Cutter:

@@ -141,7 +141,7 @@ def format_of(path: Path, named: str = "") -> ToolFormat:
 
 
 _FINDINGS: Mapping[LossKind, tuple[str, Callable[..., Finding], str, str]] = {
-    LossKind.LOST: ("tools.lost", remark, "the file can't hold ", ""),
+    LossKind.LOST: ("tools.lost", remark, "not kept: ", ""),
     LossKind.IGNORED: ("tools.ignored", info, "not taken over: ", ""),
     LossKind.ASSUMED: ("tools.assumed", warning, "assumed: ", "check it before cutting"),
     LossKind.OMITTED: ("tools.left-out", warning, "left out", ""),

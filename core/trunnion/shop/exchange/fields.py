@@ -27,6 +27,20 @@ _OWN: Mapping[str, tuple[str, ...]] = {
     "form": ("outline",),
 }
 """Fields that only one kind has; a thread mill has a pitch or a range of them."""
+ONLY: Mapping[str, tuple[str, ...]] = {
+    "corner_radius": (END_MILL, "taper", "barrel", "t-slot", "button"),
+    "taper_angle": ("taper",),
+    "barrel_radius": ("barrel",),
+    "point_angle": ("drill",),
+    "lead": (REAMER, BORING_BAR, TAP),
+    "fit": (REAMER,),
+    "smallest": (BORING_BAR,),
+    "pitch": (TAP, THREAD_MILL),
+    "pitch_low": (THREAD_MILL,),
+    "pitch_high": (THREAD_MILL,),
+    "outline": ("form",),
+}
+"""Fields of a table that only some kinds have."""
 OUTSIDE = ("name", "number", "gauge_length", "holder_rows")
 """Fields that don't stand in the table of a cutter."""
 

@@ -16,7 +16,8 @@ Parameters = dict[str, Any]
 
 
 def _end_mill(tool: ToolDescription, parameters: Parameters) -> None:
-    tool.values |= {"form": END_MILL, "corner_radius": 0.0}
+    tool.values["form"] = END_MILL
+    tool.values.setdefault("corner_radius", 0.0)
 
 
 def _ball(tool: ToolDescription, parameters: Parameters) -> None:

@@ -9,12 +9,12 @@ the order of their parameters are those of the schema CUTTING_TOOL_SCHEMA_ARM as
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from trunnion.findings import BadInput
-from trunnion.model.tool import BORING_BAR, REAMER, TAP, THREAD_MILL
+from trunnion.model.tool import REAMER, TAP, THREAD_MILL
 from trunnion.part.read.step_text import EntityNumber, StepText
 from trunnion.shop.cutters import END_MILL, ISO_GROUPS, Cutter
 from trunnion.shop.exchange.assumptions import all_completed, read_tools
@@ -155,22 +155,6 @@ def _give_form(tool: ToolDescription, own: ItemProperties, item: ToolItem) -> No
         give_cone(tool, values.pop("smallest", 0.0), values.pop("point_angle", 0.0))
     if form == END_MILL and "corner_radius" not in values and "ball" in item.title.lower():
         values["corner_radius"] = values.get("diameter", 0.0) / 2
-    for name, kinds in _ONLY.items():
-        if form not in kinds and name in values:
-            tool.ignore(_CODES[name], values.pop(name))
-
-
-_ONLY: Mapping[str, tuple[str, ...]] = {
-    "smallest": (BORING_BAR,),
-    "pitch": (TAP, THREAD_MILL),
-    "pitch_low": (THREAD_MILL,),
-    "pitch_high": (THREAD_MILL,),
-    "point_angle": ("drill",),
-    "barrel_radius": ("barrel",),
-    "corner_radius": (END_MILL, "taper", "barrel", "t-slot", "button"),
-}
-"""Fields that only some kinds have."""
-_CODES = {name: codes[0] for name, codes in LENGTHS.items()} | dict(ANGLES)
 
 
 def _form_of(words: str, own: ItemProperties, values: dict[str, Any], edge: float | None) -> str:
