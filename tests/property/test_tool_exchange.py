@@ -19,6 +19,7 @@ from trunnion.shop.cutters import Cutter, load_cutters, load_holders
 from trunnion.shop.exchange import LossKind, ReadTools, WrittenTools
 from trunnion.shop.exchange.catalogue_text import foreign_holders, holders_text, tools_text
 from trunnion.shop.exchange.contract import WHOLE_TOOL
+from trunnion.shop.exchange.fields import ONLY
 
 FORMATS = tuple(
     (name, suffix)
@@ -110,7 +111,9 @@ def test_a_tool_comes_back_but_for_exactly_what_is_listed(name, suffix, data):
         assert {
             f for f in found if f in own or getattr(cutter.tool, f, 0) not in (0.0, "", (), 180.0)
         } <= own
-    assert own <= found | unsaid, "a field is listed that came back as it was"
+    # Lost with the form, whatever the other form has in their place: the point of a drill of 180 degrees too.
+    with_form = set(ONLY) if "form" in found else set()
+    assert own <= found | unsaid | with_form, "a field is listed that came back as it was"
 
 
 @pytest.mark.parametrize(("name", "suffix"), FORMATS)
