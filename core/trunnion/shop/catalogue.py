@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
@@ -21,6 +21,7 @@ from trunnion.model.material import (
 from trunnion.model.screw_thread import ScrewThread
 from trunnion.model.tool import Tool, TurningTool
 from trunnion.settings import digest
+from trunnion.shop.crib import Crib, Cribs, load_cribs
 from trunnion.shop.cutters import Cutter, load_cutters, load_holders
 from trunnion.shop.drilling import load_boring, load_drilling, load_reaming, load_tapping
 from trunnion.shop.fits import FitTables, load_fits
@@ -40,7 +41,8 @@ class Shop:
 
     `turning` has the turning tools: no cutter that mills or drills is among them, and none of them among the cutters. `drilling` says by
     ISO 513 group or by material what drills bear, `reaming`, `boring`, `tapping` and `thread_milling` what reamers, boring bars, taps and
-    thread mills do, `turning_data` what inserts do; `fits` and `threads` have the limits of holes and screw threads.
+    thread mills do, `turning_data` what inserts do; `fits` and `threads` have the limits of holes and screw threads. `cribs` says which
+    of the tools are in which machine.
     """
 
     cutters: tuple[Cutter, ...]
@@ -56,11 +58,17 @@ class Shop:
     thread_milling: Mapping[str, ThreadMillingTable] = field(default_factory=dict)
     fits: FitTables = field(default_factory=FitTables)
     threads: ThreadTables = field(default_factory=ThreadTables)
+    cribs: Cribs = field(default_factory=dict)
 
     @property
     def tools(self) -> tuple[Tool, ...]:
         """All cutters, sorted by diameter, corner radius and reach; their numbers are 0."""
         return tuple(c.tool for c in self.cutters)
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The names of all cutters and turning tools."""
+        return frozenset((*(c.tool.name for c in self.cutters), *(t.name for t in self.turning)))
 
     @cached_property
     def digest(self) -> str:
@@ -80,11 +88,29 @@ class Shop:
             self.thread_milling,
             self.fits,
             self.threads,
+            *(self._crib_numbers,) * bool(self.cribs),
         )
+
+    @property
+    def _crib_numbers(self) -> dict[str, tuple[tuple[str, int], ...]]:
+        """What plans depend on of the cribs: wear and pockets change no plan."""
+        return {name: crib.numbers for name, crib in self.cribs.items()}
 
     def tools_for(self, iso_group: str, use: str) -> tuple[Tool, ...]:
         """Return the cutters made for a group of materials and a use (`face`, `rough`, `finish`)."""
         return tuple(c.tool for c in self.cutters if iso_group in c.suits and use in c.use)
+
+    def crib(self, machine: str) -> Crib:
+        """Return the tools in a machine, an empty crib where none is kept."""
+        return self.cribs.get(machine, Crib(machine=machine))
+
+    def with_tools(self, cutters: Collection[str], turning: Collection[str]) -> Shop:
+        """Return the shop with only the cutters and the turning tools of some names."""
+        return replace(
+            self,
+            cutters=tuple(c for c in self.cutters if c.tool.name in cutters),
+            turning=tuple(t for t in self.turning if t.name in turning),
+        )
 
     def material(self, name: str) -> Material:
         """Return a material; raise `BadInput` with the known names."""
@@ -155,7 +181,7 @@ def load_shop(user_folder: Path | None = None) -> Shop:
 
     `user_folder` has the shape of the program's own (`tools`, `holders`, `turning`, `materials`, `drilling`, `reaming`, `boring`,
     `tapping`, `thread_milling`, `fits`, `threads`, `machines`, `plans`, each with TOML files) and adds entries or replaces those of the
-    same name. What is missing there is not needed.
+    same name; its `crib` says which tools are in which machine. What is missing there is not needed.
     """
     return Shop(
         cutters=load_cutters(load_holders(user_folder), user_folder),
@@ -171,6 +197,7 @@ def load_shop(user_folder: Path | None = None) -> Shop:
         thread_milling=load_thread_milling(user_folder),
         fits=load_fits(user_folder),
         threads=load_threads(user_folder),
+        cribs=load_cribs(user_folder),
     )
 
 

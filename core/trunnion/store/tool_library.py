@@ -69,7 +69,7 @@ def import_tools(
         if file.exists():
             raise BadInput(f"{file}: is there already: remove it, or write to another file")
     for file, words in files.items():
-        _make(file.parent)
+        make_folder(file.parent)
         write_text(file, words)
     return ImportedTools(
         format=form.name, cutters=cutters, text=text, files=tuple(files), losses=reported
@@ -96,7 +96,8 @@ def _catalogue_files(
     return files
 
 
-def _make(folder: Path) -> None:
+def make_folder(folder: Path) -> None:
+    """Make a folder with those above it where it is not there; raise `BadInput` where it can't be made."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as reason:

@@ -32,6 +32,9 @@ OTHER_WORDS = {
     # what FreeCAD's libraries call a place of the tool changer, and one of its shapes of tools
     "trunnion/shop/exchange/formats/freecad/library.py": {"pocket"},
     "trunnion/shop/exchange/formats/freecad/shapes.py": {"chamfer"},
+    # the numbered seat of a tool in a magazine
+    "trunnion/shop/crib.py": {"pocket"},
+    "trunnion/cli/tools.py": {"pocket"},
     # keys of operations' choices in saved processes: of drives on curved faces, which any planner makes
     "trunnion/plan/freeform/keys.py": {"surface."},
     "trunnion/plan/freeform/lands.py": {"surface."},

@@ -22,7 +22,7 @@ def tools_text(cutters: Iterable[Cutter], losses: Iterable[Loss] = (), source: s
     for cutter in cutters:
         fields = dict.fromkeys(assumed.get(cutter.tool.name, []))
         note = f"# Assumed, to be checked: {', '.join(fields)}.\n" if fields else ""
-        blocks.append(f"{note}[tool.{_text(cutter.tool.name)}]\n{_fields(entry_of(cutter))}")
+        blocks.append(f"{note}[tool.{quoted(cutter.tool.name)}]\n{_fields(entry_of(cutter))}")
     return "\n".join(blocks)
 
 
@@ -31,7 +31,7 @@ def holders_text(holders: Iterable[Holder], source: str = "") -> str:
     blocks = [f"# Holders of {_comment(source)}.\n"] if source else []
     for holder in holders:
         fields = {"title": holder.name, "rows": holder.rows}
-        blocks.append(f"[{_text(holder.name)}]\n{_fields(fields)}")
+        blocks.append(f"[{quoted(holder.name)}]\n{_fields(fields)}")
     return "\n".join(blocks)
 
 
@@ -47,7 +47,7 @@ def _fields(fields: Mapping[str, Any]) -> str:
 
 def _value(value: Any) -> str:
     if isinstance(value, str):
-        return _text(value)
+        return quoted(value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (tuple, list)):
@@ -55,7 +55,7 @@ def _value(value: Any) -> str:
     return repr(value)
 
 
-def _text(words: str) -> str:
+def quoted(words: str) -> str:
     """Return a text as a basic string of TOML: JSON's escapes are among those of TOML, which escapes the delete character too."""
     return json.dumps(words.encode("utf-8", "replace").decode(), ensure_ascii=False).replace(
         "\x7f", "\\u007f"

@@ -6,9 +6,7 @@ Every call opens the file anew and closes it, so that several windows and comman
 
 from __future__ import annotations
 
-import os
 import sqlite3
-import sys
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -20,6 +18,7 @@ from trunnion.shop.library.plan_text import plan_of_text, plan_text
 from trunnion.shop.library.signature import PartSignature
 from trunnion.shop.library.similarity import Similarity, similarity
 from trunnion.shop.library.taught_plan import TaughtPlan
+from trunnion.shop.user_folder import FOLDER, shop_folder
 
 FILE = "plan-library.sqlite"
 """The library's file in the user's folder."""
@@ -29,8 +28,6 @@ APPLICATION = 0x54524E50
 """What marks the file as a plan library (`PRAGMA application_id`): "TRNP"."""
 PATIENCE = 5.0
 """Seconds that a call waits for another window to finish writing."""
-FOLDER = "TRUNNION_USER_FOLDER"
-"""The environment's name for the user's folder, where no option names it."""
 CREATE = """
 CREATE TABLE IF NOT EXISTS plan (
     name TEXT PRIMARY KEY NOT NULL,
@@ -58,21 +55,9 @@ class PlanMatch:
         }
 
 
-def user_folder() -> Path:
-    """Return the user's own folder for data of this program: named by the environment, else where the system keeps such data."""
-    named = os.environ.get(FOLDER, "")
-    if named:
-        return Path(named)
-    if sys.platform == "win32":
-        return Path(os.environ.get("APPDATA") or Path.home()) / "Trunnion"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Application Support" / "Trunnion"
-    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "trunnion"
-
-
 def library_file(folder: Path | None) -> Path:
     """Return the library's file in a shop's folder, in the user's own where none is given."""
-    return (user_folder() if folder is None else folder) / FILE
+    return shop_folder(folder) / FILE
 
 
 @dataclass(frozen=True, slots=True)
