@@ -42,14 +42,14 @@ class ProcessTree:
                 return o
         raise KeyError(id)
 
-    def tools(self) -> tuple[AnyTool, ...]:
-        """Return the tools in use, each once, by number."""
-        return tuple(
-            sorted(
-                {o.tool.number: o.tool for o in self.operations if not o.suppressed}.values(),
-                key=lambda t: t.number,
-            )
+    def tools(self, machine: str = "") -> tuple[AnyTool, ...]:
+        """Return the tools in use, each once, by number: all, or those on one machine, where no two have the same number."""
+        setups = {s.name for s in self.setups if s.machine == machine}
+        used = (
+            o for o in self.operations if not o.suppressed and (not machine or o.setup in setups)
         )
+        by_number = {(o.tool.number, o.tool.name): o.tool for o in used}
+        return tuple(by_number[key] for key in sorted(by_number))
 
     def with_operation(self, changed: Operation) -> ProcessTree:
         """Return the tree with the operation of the same id replaced."""

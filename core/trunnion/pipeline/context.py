@@ -77,6 +77,12 @@ class Context:
             self._machined[key] = made
         return self._machined[key]
 
+    def in_shop(self, shop: Shop) -> Context:
+        """Return the context of the same part in another shop, with the skins that were made."""
+        made = Context(self.part, shop, self.library)
+        made._skins.update(self._skins)
+        return made
+
     def skin(self, chord: float = tolerance.SKIN_CHORD, progress: Progress = NO_PROGRESS) -> Skin:
         """Return the part's skin in its own coordinates within a chord error (mm), as fine as finishing needs it unless said; kept.
 
@@ -103,6 +109,10 @@ class Contexts:
 
     def __init__(self, part: Part, shop: Shop, library: PlanLibrary | None = None) -> None:
         self._made: dict[tuple[Cut, ...], Context] = {(): Context(part, shop, library)}
+
+    def use_shop(self, shop: Shop) -> None:
+        """Program the parts for another shop from now on."""
+        self._made = {cuts: context.in_shop(shop) for cuts, context in self._made.items()}
 
     def after(self, cuts: tuple[Cut, ...], progress: Progress = NO_PROGRESS) -> Context:
         """Return the context of the part after some cuts; raise `BadInput` when one of them can't be made."""

@@ -25,14 +25,15 @@ from trunnion.pipeline.context import Context, Contexts
 from trunnion.pipeline.execution import run_step
 from trunnion.pipeline.part_work import before_recognition
 from trunnion.pipeline.step import Step
-from trunnion.pipeline.steps import STEP_TABLE, STEPS, step_named
+from trunnion.pipeline.steps import STEP_TABLE, STEPS, shop_of_fixes, step_named
 from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.plan.repair.contract import RepairJob, applied
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.report.picture_process import Ahead, Drawing, here
 from trunnion.settings import Declared, Value, checked, choose, declared, digest
-from trunnion.shop import load_shop
+from trunnion.shop import Shop, load_shop
 from trunnion.shop.library import PlanLibrary, library_file
+from trunnion.shop.user_folder import shop_folder
 from trunnion.store.project_file import PROJECT_SUFFIX
 from trunnion.verify.settings import ProofSettings
 
@@ -51,12 +52,13 @@ _LAID = "toolpath"
 class Engine:
     """The one door to the core. Sessions go in and come out; only the part and the catalogues stay here.
 
-    `user_folder` is a folder of a shop's own tools, materials, machines and plans, with its plan `library`; without it the catalogues are
-    the program's own, and the library is that of the user's data folder.
+    `user_folder` is a folder of a shop's own tools, materials, machines and plans, with its tool cribs and its plan `library`; without it
+    the user's data folder is that, which need not be there.
     """
 
     def __init__(self, user_folder: Path | None = None) -> None:
-        self._shop = load_shop(user_folder)
+        self.folder = shop_folder(user_folder)
+        self._shop = load_shop(self.folder)
         self.library = PlanLibrary(library_file(user_folder))
         self._contexts: Contexts | None = None
         self._file: tuple[bytes, str] = (b"", "")
@@ -128,6 +130,20 @@ class Engine:
         """Go on with the part that is open in another engine."""
         self._contexts, self._file = other._contexts, other._file
         self._playback, self._guides = None, None
+
+    @property
+    def shop(self) -> Shop:
+        """The catalogues with the user's folder over them."""
+        return self._shop
+
+    def reload_shop(self) -> None:
+        """Read the catalogues again after a file of the user's folder was changed; what was planned with others is stale then.
+
+        Raises `BadInput` for a file that can't be used; the catalogues are as they were then.
+        """
+        self._shop = load_shop(self.folder)
+        if self._contexts is not None:
+            self._contexts.use_shop(self._shop)
 
     def keep(self) -> tuple[bytes, str]:
         """Return the bytes and the suffix of the part file as it was read, so that another engine can take over with `attach`."""
@@ -235,7 +251,8 @@ class Engine:
         """Return the session with one fix in its process, to be computed and proven again; raise `BadInput` where nothing can be done."""
         if session.process is None:
             raise BadCall("no operations yet: generate the route first")
-        job = RepairJob(shop=self.context_of(session).shop, choices=session.choices)
+        shop = shop_of_fixes(session, self.context_of(session).shop)
+        job = RepairJob(shop=shop, choices=session.choices)
         if fix.operation and fix.operation not in {o.id for o in session.process.operations}:
             raise BadInput(f"{fix.operation} is not in the plan any more: verify again")
         changed = applied(session.process, fix, job)
@@ -399,6 +416,7 @@ class Engine:
                 name=name,
                 date=date,
                 estimate=estimate(session, context),
+                cribs=self._shop.cribs,
                 drawing=drawing,
                 progress=progress.part(0.1, 0.9),
             )

@@ -41,6 +41,7 @@ from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.peak import overloads
 from trunnion.plan.holes.demand import demand_words
 from trunnion.plan.library.settings import LibrarySettings
+from trunnion.plan.loaded_tools import loaded_findings, planning_shop
 from trunnion.plan.manual.manual_operations import with_manual_operations
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.setups import SetupSettings, make_setups
@@ -50,6 +51,7 @@ from trunnion.progress import Progress
 from trunnion.recognize.contract import Measuring, registered_family, usual_blank
 from trunnion.registry import FAMILIES, FIXES, PART_KINDS, PLANNERS, STRATEGIES
 from trunnion.settings import checked, choose
+from trunnion.shop import Shop
 from trunnion.verify.settings import ProofSettings
 
 
@@ -188,18 +190,22 @@ def _route(session: Session, context: Context, progress: Progress) -> Result:
     choices = with_machine(planner, session.blank, session.choices, context.shop)
     setups = make_setups(recognition, session.blank, checked(choose(SetupSettings, choices)))
     planner.can_plan(context.part)
+    shop = planning_shop(context.shop, (s.machine for s in setups), choices)
     job = RouteJob(
         recognition=recognition,
         sizes=session.sizes,
         blank=session.blank,
         setups=setups,
-        shop=context.shop,
+        shop=shop,
         context=SessionContext(context, session),
         choices=choices,
         progress=progress,
     )
     process = routed(planner, job, library_choice(session, context))
-    process = on_operations(with_manual_operations(session.process, process), recognition)
+    kept = with_manual_operations(session.process, process, context.shop.cribs)
+    process = on_operations(kept, recognition)
+    loaded = loaded_findings(process, context.shop, session.choices)
+    process = replace(process, findings=(*process.findings, *loaded))
     return Result(
         session=replace(session, setups=process.setups or setups, process=process),
         findings=process.findings,
@@ -241,12 +247,18 @@ def _verify(session: Session, context: Context, progress: Progress) -> Result:
 def _repair(session: Session, context: Context, progress: Progress) -> Result:
     after = repaired(
         session,
-        RepairJob(shop=context.shop, choices=session.choices),
+        RepairJob(shop=shop_of_fixes(session, context.shop), choices=session.choices),
         checked(choose(RepairSettings, session.choices)),
         partial(_proven, context),
         progress,
     )
     return Result(session=after, findings=repair_findings(after))
+
+
+def shop_of_fixes(session: Session, shop: Shop) -> Shop:
+    """Return the shop that a fix of a session's plan may choose from, as `planning_shop` does for its route."""
+    setups = session.process.setups if session.process is not None else session.setups
+    return planning_shop(shop, (s.machine for s in setups), session.choices)
 
 
 def _proven(context: Context, session: Session, progress: Progress) -> Session:

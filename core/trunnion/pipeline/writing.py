@@ -13,6 +13,7 @@ from trunnion.plan.freeform.estimate.finishing_time import Estimate
 from trunnion.post.release import release
 from trunnion.progress import Progress
 from trunnion.report.picture_process import Drawing, here
+from trunnion.shop.crib import NO_CRIBS, Cribs, tools_listed
 from trunnion.store.atomic import write_text
 from trunnion.store.programs import write_programs as write_texts
 
@@ -33,12 +34,14 @@ def write_documents(
     name: str,
     date: str,
     estimate: Estimate | None = None,
+    cribs: Cribs = NO_CRIBS,
     drawing: Drawing = here,
     progress: Progress,
 ) -> tuple[str, ...]:
     """Write programs, tool list, XML, pictures and report of a proven session and return the file names.
 
-    The report has the times of areas where an `estimate` of them is given; `drawing` draws its pictures of the triangles that `mesh_of`
+    The report has the times of areas where an `estimate` of them is given, tool list and report the pockets and wear of the tools in
+    `cribs`; `drawing` draws its pictures of the triangles that `mesh_of`
     returns, which is asked once programs are there: what is refused needs none.
     """
     from trunnion.report.html import report_html
@@ -53,7 +56,8 @@ def write_documents(
     )
     drawn = drawing(session, mesh_of(), folder, stem)
     progress.at(0.1, "writing XML and tool list")
-    tools = [t.as_dict() for t in session.process.tools()]
+    listed = tools_listed(session.process, cribs)
+    tools = [t.as_dict() for t in listed]
     write_text(
         folder / f"{stem}.tools.json", json.dumps(tools, indent=1, ensure_ascii=False) + "\n"
     )
@@ -63,7 +67,7 @@ def write_documents(
     write_process(session, folder / f"{stem}.process.xml")
     pictures = drawn(progress.part(0.3, 0.9))
     progress.at(0.9, "writing the report")
-    page = report_html(session, stem, pictures, folder, date, estimate)
+    page = report_html(session, stem, pictures, folder, date, estimate, listed)
     write_text(folder / f"{stem}.report.html", page)
     progress.at(1.0, "report written")
     return (

@@ -19,6 +19,11 @@ class RouteSettings:
         "shop's own before the program's.",
         catalogue="plans",
     )
+    only_in_machine: bool = setting(
+        False,
+        label="Only tools in the machine",
+        help="Cutters are chosen from the tool crib of the machine alone, not from the whole catalogue.",
+    )
     wall_allowance: float = setting(
         0.5,
         unit="mm",

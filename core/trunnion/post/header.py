@@ -167,12 +167,8 @@ def plan_digest(session: Session) -> str:
 
 def tools_of(programs: Sequence[Program]) -> tuple[AnyTool, ...]:
     """Return the tools of some programs, each once, by number."""
-    return tuple(
-        sorted(
-            {s.tool.number: s.tool for p in programs for s in p.sections}.values(),
-            key=lambda t: t.number,
-        )
-    )
+    by_number = {(s.tool.number, s.tool.name): s.tool for p in programs for s in p.sections}
+    return tuple(by_number[key] for key in sorted(by_number))
 
 
 def _length(value: float, units: str) -> str:

@@ -14,6 +14,7 @@ from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.plan.freeform.estimate.finishing_time import Estimate
 from trunnion.plan.setups.flip import TURNED_OVER, turn_words
 from trunnion.report.pictures import Picture
+from trunnion.shop.crib import PlanTool, tools_listed
 from trunnion.units import degrees, timed
 from trunnion_resources import folder as resource_folder
 
@@ -28,10 +29,12 @@ def report_html(
     folder: Path,
     date: str = "",
     estimate: Estimate | None = None,
+    tools: Sequence[PlanTool] = (),
 ) -> str:
     """Return the report of a session, the same bytes for the same session; the pictures are read from the folder and stand in the text.
 
-    `estimate` has the times of areas that are finished and the gain of cutters of their own, where the plan has such areas.
+    `estimate` has the times of areas that are finished and the gain of cutters of their own, where the plan has such areas; `tools` the
+    tools of the plan with what the cribs have of them (none: the plan's alone).
     """
     from jinja2 import Environment, StrictUndefined
 
@@ -60,6 +63,7 @@ def report_html(
         estimate=estimate,
         fix_words=words_of,
         turns=turns(session),
+        tools=tools or (tools_listed(session.process) if session.process else ()),
     )
 
 

@@ -137,10 +137,14 @@ def read_back(
     """Return the motions that the posted texts of the control's dialect say, setup by setup."""
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
-    tools, work_positions = session.process.tools(), work_positions_of(session, machines)
+    process, work_positions = session.process, work_positions_of(session, machines)
     read = (
         read_program(
-            f.dialect, f.text, tools, held(session, session.process.setup(f.setup)), work_positions
+            f.dialect,
+            f.text,
+            process.tools(process.setup(f.setup).machine),
+            held(session, process.setup(f.setup)),
+            work_positions,
         )
         for f in progress.each(posted)
         if f.setup

@@ -58,7 +58,9 @@ def followed(
         process, fits = work.applied(process, operation, known)
         taught += 1
         other_cutter += not fits
-    return FollowedPlan(process=numbered(process), taught=taught, other_cutter=other_cutter)
+    return FollowedPlan(
+        process=numbered(process, shop.cribs), taught=taught, other_cutter=other_cutter
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,9 +10,12 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.plan.manual.operation_order import out_of_order
 from trunnion.plan.process import with_tool_numbers
+from trunnion.shop.crib import NO_CRIBS, Cribs
 
 
-def with_manual_operations(before: ProcessTree | None, made: ProcessTree) -> ProcessTree:
+def with_manual_operations(
+    before: ProcessTree | None, made: ProcessTree, cribs: Cribs = NO_CRIBS
+) -> ProcessTree:
     """Return the plan that was made with the operations that a person changed, copied and moved as they were, and without those that were
     deleted.
 
@@ -30,7 +33,7 @@ def with_manual_operations(before: ProcessTree | None, made: ProcessTree) -> Pro
     return replace(
         made,
         # A cutter of the plan before has the number that it had there.
-        operations=with_tool_numbers(_without_lost_needs(operations)),
+        operations=with_tool_numbers(_without_lost_needs(operations), made.setups, cribs),
         removed=tuple(dict.fromkeys((*made.removed, *before.removed))),
         findings=(*made.findings, *_lost(before, planned | copies), *_not_moved(left)),
     )

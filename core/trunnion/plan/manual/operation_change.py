@@ -95,7 +95,7 @@ def with_change(
     if changed is before:
         return process
     data = _with_load(changed, material)
-    return numbered(process.with_operation(replace(data, by_hand=True)))
+    return numbered(process.with_operation(replace(data, by_hand=True)), shop.cribs)
 
 
 def check_known(process: ProcessTree, id: str) -> None:

@@ -14,6 +14,7 @@ from trunnion.plan.settings import RouteSettings
 from trunnion.registry import FIXES
 from trunnion.settings import Value, checked, choose
 from trunnion.shop import Shop
+from trunnion.shop.crib import Cribs
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -49,13 +50,14 @@ def applied(process: ProcessTree, fix: Fix, job: RepairJob) -> ProcessTree | Non
         return None
     rule: FixRule = registry.get(FIXES, fix.kind)
     changed = rule(process, fix, job)
-    return None if changed is None else numbered(changed)
+    return None if changed is None else numbered(changed, job.shop.cribs)
 
 
 def _is_manual(process: ProcessTree, id: str) -> bool:
     return any(o.by_hand for o in process.operations if o.id == id)
 
 
-def numbered(process: ProcessTree) -> ProcessTree:
-    """Return a process whose tools have the numbers of their order of use."""
-    return replace(process, operations=with_tool_numbers(process.operations))
+def numbered(process: ProcessTree, cribs: Cribs) -> ProcessTree:
+    """Return a process whose tools have the numbers of the cribs of its machines, others those of their order of use."""
+    operations = with_tool_numbers(process.operations, process.setups, cribs)
+    return replace(process, operations=operations)
