@@ -1,4 +1,4 @@
-"""`trunnion tools`: the catalogue's tools listed, and tool libraries of other programs taken over and written."""
+"""`trunnion tools`: the catalogue's tools listed, tool libraries of other programs taken over and written, and the tools in machines."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from trunnion.units import trimmed
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from trunnion.shop.crib import Crib
     from trunnion.shop.cutters import Cutter
     from trunnion.shop.exchange import Loss
 
@@ -31,7 +32,7 @@ def add(commands: Any) -> None:
     """Add the command to the command line."""
     made = commands.add_parser(
         "tools",
-        help="the catalogue's tools: list them, import and export tool libraries of other programs",
+        help="the catalogue's tools: list them, import and export tool libraries, keep which are in a machine",
         description="Tool libraries of other programs are read and written with a list of what was lost on the way.",
     )
     kinds = made.add_subparsers(dest="what", metavar="WHAT", required=True)
@@ -88,6 +89,23 @@ def add(commands: Any) -> None:
     _add_common(one)
     one.set_defaults(run=run_export)
 
+    one = kinds.add_parser(
+        "crib",
+        help="the tools in a machine: list them, put tools in, take them out, keep their wear",
+        description="Keeps T number, pocket and wear of the tools in each machine in the user's folder, crib/MACHINE.toml.",
+    )
+    one.add_argument("--machine", default="", metavar="NAME", help="machine (default: list all)")
+    for option, metavar, words in (
+        ("--put", "NAME=T[:POCKET]", "put a tool in, or give it another T number and pocket"),
+        ("--take", "NAME", "take a tool out"),
+        ("--wear", "NAME=LENGTH,RADIUS", "measured wear in mm, below 0: worn away"),
+    ):
+        one.add_argument(
+            option, action="append", default=[], metavar=metavar, help=f"{words}; may be repeated"
+        )
+    _add_common(one)
+    one.set_defaults(run=run_crib)
+
 
 def _add_choice(made: argparse.ArgumentParser) -> None:
     made.add_argument(
@@ -135,9 +153,11 @@ def _add_common(made: argparse.ArgumentParser) -> None:
 def run_list(options: argparse.Namespace) -> int:
     """Print the tools of the catalogue that are requested for."""
     from trunnion.shop.cutters import load_cutters, load_holders
+    from trunnion.shop.user_folder import shop_folder
 
     _check_folder(options.user_folder)
-    found = selected(options, load_cutters(load_holders(options.user_folder), options.user_folder))
+    folder = shop_folder(options.user_folder)
+    found = selected(options, load_cutters(load_holders(folder), folder))
     if options.json:
         show_json({"tools": [_as_dict(c) for c in found]})
     elif not found:
@@ -150,6 +170,7 @@ def run_list(options: argparse.Namespace) -> int:
 def run_import(options: argparse.Namespace) -> int:
     """Take a library over and print what was written, or the tables where nothing is."""
     from trunnion.shop.exchange import findings_of
+    from trunnion.shop.user_folder import shop_folder
     from trunnion.store.tool_library import exchange_context, import_tools
 
     _check_folder(options.user_folder)
@@ -157,7 +178,9 @@ def run_import(options: argparse.Namespace) -> int:
     if output is not None:
         check_output(output.parent if output.suffix.lower() == ".toml" else output)
     is_folder = output is not None and output.suffix.lower() != ".toml" and output.is_dir()
-    folder = output if is_folder and options.user_folder is None else options.user_folder
+    folder = (
+        output if is_folder and options.user_folder is None else shop_folder(options.user_folder)
+    )
     open_ends = exchange_context(folder, unit=options.unit, holder=options.holder)
     done = import_tools(options.file, open_ends, named=options.format, output=output)
     findings = findings_of(done.losses)
@@ -182,13 +205,14 @@ def run_import(options: argparse.Namespace) -> int:
 def run_export(options: argparse.Namespace) -> int:
     """Write tools as a library of another program."""
     from trunnion.shop.exchange import findings_of
+    from trunnion.shop.user_folder import shop_folder
     from trunnion.store.tool_library import exchange_context, export_tools, tools_of_project
 
     _check_folder(options.user_folder)
     if not options.output.parent.is_dir():
         raise BadInput(f"{options.output}: there is no folder {options.output.parent}")
     check_output(options.output.parent)
-    open_ends = exchange_context(options.user_folder, unit=options.unit)
+    open_ends = exchange_context(shop_folder(options.user_folder), unit=options.unit)
     cutters: Sequence[Cutter] = open_ends.cutters
     losses: Sequence[Loss] = ()
     if options.project is not None:
@@ -214,6 +238,76 @@ def run_export(options: argparse.Namespace) -> int:
         print(f"{_tools(done.count)} written to {_joined(done.files)}")
     show_findings(options, findings)
     return exit_code(findings)
+
+
+def run_crib(options: argparse.Namespace) -> int:
+    """Change the crib of a machine and print it; without a machine print all cribs."""
+    from trunnion.shop import load_shop
+    from trunnion.shop.user_folder import shop_folder
+    from trunnion.store.tool_crib import put_tool, set_wear, take_tool
+
+    _check_folder(options.user_folder)
+    folder = shop_folder(options.user_folder)
+    shop = load_shop(folder)
+    machine = options.machine
+    if machine:
+        shop.machine(machine)
+    elif options.put or options.take or options.wear:
+        raise BadCall("--put, --take and --wear want a machine: --machine NAME")
+    for name in options.take:
+        take_tool(folder, machine, name)
+    for name, number, pocket in [_put_words(w) for w in options.put]:
+        put_tool(folder, shop, machine, name, number=number, pocket=pocket)
+    for name, length, radius in [_wear_words(w) for w in options.wear]:
+        set_wear(folder, machine, name, length, radius)
+    cribs = load_shop(folder).cribs
+    found = [cribs[m] for m in sorted(cribs) if machine in ("", m)]
+    if options.json:
+        tools = {c.machine: [t.as_dict() for t in c.tools] for c in found}
+        show_json({"machines": tools})
+    else:
+        print(crib_table(found) if any(c.tools for c in found) else "no tools in the machine")
+    return 0
+
+
+def _put_words(words: str) -> tuple[str, int, int]:
+    """Return name, T number and pocket of `NAME=T[:POCKET]`."""
+    name, _, numbers = words.rpartition("=")
+    number, _, pocket = numbers.partition(":")
+    if not (name and number.isdecimal() and (pocket or "0").isdecimal() and int(number)):
+        raise BadCall(f"--put wants NAME=T or NAME=T:POCKET, whole numbers from 1, not {words}")
+    return name, int(number), int(pocket or 0)
+
+
+def _wear_words(words: str) -> tuple[str, float, float]:
+    """Return name, length and radius in mm of `NAME=LENGTH,RADIUS`."""
+    name, _, numbers = words.rpartition("=")
+    length, _, radius = numbers.partition(",")
+    try:
+        found = float(length), float(radius)
+    except ValueError:
+        raise BadCall(f"--wear wants NAME=LENGTH,RADIUS in mm, not {words}") from None
+    if not name:
+        raise BadCall(f"--wear wants NAME=LENGTH,RADIUS in mm, not {words}")
+    return name, *found
+
+
+def crib_table(cribs: Sequence[Crib]) -> str:
+    """Return the tools in some machines as aligned text, wear in mm."""
+    rows = [("machine", "T", "pocket", "tool", "wear L", "wear R")]
+    rows += [
+        (
+            crib.machine,
+            str(tool.number),
+            str(tool.pocket or ""),
+            tool.name,
+            trimmed(tool.wear_length, 4),
+            trimmed(tool.wear_radius, 4),
+        )
+        for crib in cribs
+        for tool in crib.tools
+    ]
+    return table(rows, right=(1, 2, 4, 5))
 
 
 def selected(options: argparse.Namespace, cutters: Sequence[Cutter]) -> tuple[Cutter, ...]:
