@@ -22,6 +22,7 @@ from trunnion_gui.menus.bars import fill_menus, toolbar
 from trunnion_gui.menus.general import add_general_commands
 from trunnion_gui.menus.handlers import Handlers
 from trunnion_gui.menus.playback import add_playback_commands
+from trunnion_gui.menus.shop import add_shop_commands
 from trunnion_gui.panels.blank import BlankPanel
 from trunnion_gui.panels.generate import GeneratePanel
 from trunnion_gui.panels.optimize import OptimizePanel
@@ -30,6 +31,7 @@ from trunnion_gui.panels.route import RoutePanel
 from trunnion_gui.panels.size import SizePanel
 from trunnion_gui.playback.player import Player
 from trunnion_gui.playback.sync import PlaybackSync
+from trunnion_gui.shop.window import ShopWindow
 from trunnion_gui.storage import preferences
 from trunnion_gui.storage.recovery import Recovery
 from trunnion_gui.storage.unsaved import UnsavedWork
@@ -56,6 +58,7 @@ class Window(QMainWindow):
     def __init__(self, factory: str = ENGINE) -> None:
         super().__init__()
         self._is_closing = False
+        self.shop: ShopWindow | None = None
         self.setWindowTitle("Trunnion")
         self.setWindowIcon(icons.window_icon())
         self.setAcceptDrops(True)
@@ -74,6 +77,7 @@ class Window(QMainWindow):
         add_general_commands(self)
         for view in self.views:
             view.add_commands(self)
+        add_shop_commands(self)
         add_playback_commands(self)
         self.viewport = ViewportPane(
             self.document,
@@ -134,6 +138,8 @@ class Window(QMainWindow):
             event.ignore()
             return
         self.arrangement.keep()
+        if self.shop is not None:
+            self.shop.close()
         self.recovery.end()
         self.document.jobs.close()
         self.viewport.scene.end()
@@ -162,6 +168,13 @@ class Window(QMainWindow):
         self.deviation.switch(on)
         if on:
             self.show_dock("deviation")
+
+    def show_shop(self, page: str) -> None:
+        """Open the window of the shop, made when it is first wanted, at one of its pages."""
+        if self.shop is None:
+            self.shop = ShopWindow(self.document, self)
+            self.shop.use_theme(self.theme)
+        self.shop.open(page)
 
     def show_dock(self, name: str) -> None:
         """Bring a dock to the front by its name."""
@@ -208,6 +221,8 @@ class Window(QMainWindow):
         self.viewport.use_theme(new_theme)
         self.docks.use_theme(new_theme)
         self.playback.use_theme(new_theme)
+        if self.shop is not None:
+            self.shop.use_theme(new_theme)
         for view in self.views:
             view.use_theme(new_theme)
         for panel in self.panels.values():

@@ -24,6 +24,7 @@ from trunnion_gui.document.files import Files
 from trunnion_gui.document.jobs import Finish, Job, Jobs
 from trunnion_gui.document.library import Library
 from trunnion_gui.document.selection import SelectionModel
+from trunnion_gui.document.shop import ShopCatalogue
 from trunnion_gui.edits import Edit, ExternalEdit, History
 from trunnion_gui.i18n import tr
 from trunnion_gui.worker.drawing import DrawnMesh
@@ -33,7 +34,7 @@ from trunnion_gui.worker.worker import ENGINE, Reply
 
 
 class Document(QObject):
-    """The open part's session and everything that happens to it: `jobs`, `files`, `selection` and `library` are its parts."""
+    """The open part's session and everything that happens to it: `jobs`, `files`, `selection`, `library` and `shop` are its parts."""
 
     changed = Signal()
     """The shown session is another one, or its states are."""
@@ -59,7 +60,7 @@ class Document(QObject):
         self._settled: tuple[dict[str, str], tuple[PostedFile, ...]] = {}, ()
         self.jobs = Jobs(factory, self.notice, self)
         self.files, self.selection = Files(self), SelectionModel(self)
-        self.library = Library(self)
+        self.library, self.shop = Library(self), ShopCatalogue(self)
         self.jobs.changed.connect(self._begin)
         self.jobs.staged.connect(self._take_stage)
         self.jobs.stopped.connect(self._stop)
@@ -216,7 +217,7 @@ class Document(QObject):
         if session is not self.session:
             self.history.push(label, session, gesture)
             self._show(session)
-            self._request_states()
+            self.refresh_states()
 
     def choose(self, key: str, label: str, value: Value, gesture: str = "") -> None:
         """Choose a setting by its full key."""
@@ -230,7 +231,7 @@ class Document(QObject):
             self._go_external(external.undo, external, label, self.history.undo)
         elif self.jobs.is_free():
             self._show(self.history.undo())
-            self._request_states()
+            self.refresh_states()
 
     def redo(self) -> None:
         """Bring back what was undone."""
@@ -240,7 +241,7 @@ class Document(QObject):
             self._go_external(external.redo, external, label, self.history.redo)
         elif self.jobs.is_free():
             self._show(self.history.redo())
-            self._request_states()
+            self.refresh_states()
 
     # inside
 
@@ -270,10 +271,16 @@ class Document(QObject):
             self.states.get(s) in ("done", "problem") for s in until(last)
         )
 
-    def _request_states(self) -> None:
+    def refresh_states(self) -> None:
+        """Request the states of the steps: what they read is, or may be, another one."""
         self.jobs.forget("states")
         if self.has_part:
             self.jobs.query("states", self.session, finish=self._take_states)
+
+    def refresh_groups(self) -> None:
+        """Request the declared settings: the catalogues that some name things of are others."""
+        self.jobs.forget("settings")
+        self.jobs.query("settings", finish=self._take_groups)
 
     def _attach(self) -> None:
         """Give a fresh worker the part, and send it again the queries without a reply."""

@@ -47,6 +47,7 @@ QTreeView::item:hover, QTableView::item:hover {{ background: {raised}; }}
 QHeaderView {{ background: {panel}; }}
 QHeaderView::section {{ background: {panel}; color: {muted}; border: none; border-bottom: 1px solid {line}; padding: 5px 6px;
     font-size: 12px; }}
+QHeaderView::up-arrow, QHeaderView::down-arrow {{ subcontrol-position: center left; width: 8px; height: 8px; }}
 QTableCornerButton::section {{ background: {panel}; border: none; }}
 QScrollArea {{ background: {panel}; border: none; }}
 QScrollArea > QWidget > QWidget {{ background: {panel}; }}
@@ -65,9 +66,9 @@ QComboBox::drop-down {{ border: none; width: 20px; }}
 QComboBox::down-arrow {{ image: url({icons}/chevron.svg); width: 12px; height: 12px; }}
 QComboBox QAbstractItemView {{ background: {panel}; color: {text}; border: 1px solid {line}; padding: 4px; }}
 QCheckBox {{ spacing: 7px; color: {text}; }}
-QCheckBox::indicator, QTreeView::indicator, QListView::indicator {{
+QCheckBox::indicator, QTreeView::indicator, QListView::indicator, QTableView::indicator {{
     width: 15px; height: 15px; border: 1px solid {muted}; border-radius: 4px; background: {panel}; }}
-QCheckBox::indicator:checked, QTreeView::indicator:checked, QListView::indicator:checked {{
+QCheckBox::indicator:checked, QTreeView::indicator:checked, QListView::indicator:checked, QTableView::indicator:checked {{
     background: {accent}; border-color: {accent}; image: url({icons}/tick.svg); }}
 QPushButton {{ background: {raised}; color: {text}; border: 1px solid {line}; border-radius: 5px; padding: 5px 13px; min-height: 20px; }}
 QPushButton:hover {{ border-color: {accent}; }}

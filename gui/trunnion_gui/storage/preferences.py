@@ -29,6 +29,11 @@ def language() -> str:
     return str(settings().value("language", "en"))
 
 
+def word(name: str) -> str:
+    """Return a word that is remembered, empty where none is."""
+    return str(settings().value(name, ""))
+
+
 def remember(name: str, value: str | QByteArray) -> None:
     """Remember a word or an arrangement."""
     settings().setValue(name, value)

@@ -276,8 +276,9 @@ def _offered(setting: Declared) -> Declared:
     if not setting.catalogue or setting.choices:
         return setting
     from trunnion.shop import load_shop
+    from trunnion.shop.user_folder import user_folder
 
-    shop = load_shop()
+    shop = load_shop(user_folder())
     known = (
         [tool.name for tool in shop.tools if not tool.locked]
         if setting.catalogue == "tools"

@@ -1,0 +1,1 @@
+"""The window of the shop: tools with the tool crib, machines, materials."""
