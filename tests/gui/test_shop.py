@@ -65,14 +65,14 @@ def search(shop, words):
 
 
 def listed(shop):
-    rows = range(shop.tools.listed.rowCount())
-    return [shop.tools.listed.index(r, NAME).data() for r in rows]
+    model = shop.tools.table.model()
+    return [model.index(r, NAME).data() for r in range(model.rowCount())]
 
 
 def click(shop, name, column=NAME):
     """Click a cell of the table, at its tick in the column of ticks."""
     table = shop.tools.table
-    index = shop.tools.listed.index(listed(shop).index(name), column)
+    index = shop.tools.model.index(listed(shop).index(name), column)
     table.scrollTo(index)
     box = table.visualRect(index)
     at = QPoint(box.left() + 14, box.center().y()) if column == TICK else box.center()
@@ -163,8 +163,14 @@ def test_a_tool_is_put_into_the_machine_numbered_worn_and_taken_out(shop, folder
     tool = load_cribs(folder)[MACHINE].tool(DRILL)
     assert (tool.number, tool.pocket) == (12, 7)
     assert (tool.wear_length, tool.wear_radius) == (-0.015, -0.004)
-    assert shop.tools.listed.index(listed(shop).index(DRILL), NUMBER).data() == "12"
+    assert shop.tools.model.index(listed(shop).index(DRILL), NUMBER).data() == "12"
     assert details.length.value() == -0.015
+    # The table is sorted by a click on a column, and the tool stays selected.
+    header = shop.tools.table.horizontalHeader()
+    at = QPoint(header.sectionViewportPosition(NUMBER) + 30, header.height() // 2)
+    QTest.mouseClick(header.viewport(), LEFT, pos=at)
+    QTest.mouseClick(header.viewport(), LEFT, pos=at)
+    assert listed(shop)[0] == DRILL and shop.tools.selected_names() == (DRILL,)
     # A number that another tool has is refused in words, and the field shows again what is so.
     search(shop, "DR-S D8.5")
     (other,) = listed(shop)

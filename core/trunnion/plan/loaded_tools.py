@@ -56,7 +56,8 @@ def loaded_findings(
 
 
 def _summary(process: ProcessTree, cribs: Mapping[str, Crib]) -> Finding:
-    words = " and ".join(f"the {len(c.tools)} tools in {m}" for m, c in cribs.items())
+    counts = [(len(c.tools), m) for m, c in cribs.items()]
+    words = " and ".join(f"the {n} {'tool' if n == 1 else 'tools'} in {m}" for n, m in counts)
     text = f"only {words} may be used"
     is_short = any(f.severity in (Severity.ERROR, Severity.WARNING) for f in process.findings)
     if not is_short:

@@ -78,7 +78,7 @@ def candidates(
     if not tools:
         return Candidates(
             tools=(),
-            reason="the catalogue has no cutter for this material",
+            reason="there is no cutter to choose from for this material",
             remedy="add cutters to the tools folder",
         )
     small = [

@@ -11,7 +11,6 @@ from PySide6.QtCore import (
     QAbstractTableModel,
     QModelIndex,
     QPersistentModelIndex,
-    QSortFilterProxyModel,
     Qt,
     Signal,
 )
@@ -25,8 +24,16 @@ from trunnion_gui.worker.shop_requests import ToolRow
 
 Index = QModelIndex | QPersistentModelIndex
 TICK, NUMBER, NAME, FORM, DIAMETER, CORNER, FLUTES, STICKOUT, GAUGE = range(9)
-_SORTED = Qt.ItemDataRole.UserRole
-"""The role of what columns are sorted by."""
+_FIELDS = {
+    NAME: "name",
+    FORM: "form",
+    DIAMETER: "diameter",
+    CORNER: "corner_radius",
+    FLUTES: "flute_length",
+    STICKOUT: "stickout",
+    GAUGE: "gauge_length",
+}
+"""What the columns after the first two have of a row."""
 _ENDS = ("flat", "bull", "ball")
 END_MILL = "end mill"
 _TURNING = "turning"
@@ -61,7 +68,10 @@ class ToolQuery:
 
 
 class ToolModel(QAbstractTableModel):
-    """The tools of the catalogue with the crib of one machine."""
+    """The tools of the catalogue with the crib of one machine: `rows` all of them, `listed` what a query takes, sorted by a column.
+
+    Filtered and sorted here and not by a proxy of Qt, which would call back for each comparison: seconds for thousands of tools.
+    """
 
     ticked = Signal(str, bool)
     """A person put a tool into the machine, or took it out."""
@@ -69,7 +79,11 @@ class ToolModel(QAbstractTableModel):
     def __init__(self) -> None:
         super().__init__()
         self.rows: Sequence[ToolRow] = ()
+        self.listed: list[ToolRow] = []
         self.crib = Crib(machine="")
+        self._numbers: dict[str, int] = {}
+        self._query = ToolQuery()
+        self._order = DIAMETER, Qt.SortOrder.AscendingOrder
         self._titles = (
             "",
             tr("T"),
@@ -82,19 +96,39 @@ class ToolModel(QAbstractTableModel):
             tr("Gauge"),
         )
 
-    def show_tools(self, rows: Sequence[ToolRow], crib: Crib) -> None:
-        """Show other tools, or the same in another crib."""
-        if rows is not self.rows:
+    def show_tools(self, rows: Sequence[ToolRow], crib: Crib, query: ToolQuery) -> None:
+        """List the tools that a query takes."""
+        self.rows, self.crib, self._query = rows, crib, query
+        self._numbers = dict(crib.numbers)
+        self._renew()
+
+    def sort(self, column: int, order: Qt.SortOrder = Qt.SortOrder.AscendingOrder) -> None:
+        self._order = column, order
+        self._renew()
+
+    def is_loaded(self, row: ToolRow) -> bool:
+        """Return whether a tool is in the machine."""
+        return row.name in self._numbers
+
+    def _renew(self) -> None:
+        column, order = self._order
+        listed = sorted(
+            (r for r in self.rows if self._query.takes(r, self.is_loaded(r))),
+            key=lambda r: self._value(r, column),
+            reverse=order == Qt.SortOrder.DescendingOrder,
+        )
+        is_other = len(listed) != len(self.listed) or any(
+            a is not b for a, b in zip(listed, self.listed, strict=True)
+        )
+        if is_other:
             self.beginResetModel()
-            self.rows, self.crib = rows, crib
+            self.listed = listed
             self.endResetModel()
-        elif crib != self.crib:
-            self.crib = crib
-            if rows:
-                self.dataChanged.emit(self.index(0, 0), self.index(len(rows) - 1, GAUGE))
+        elif listed:
+            self.dataChanged.emit(self.index(0, 0), self.index(len(listed) - 1, GAUGE))
 
     def rowCount(self, parent: Index = _NO_PARENT) -> int:
-        return 0 if parent.isValid() else len(self.rows)
+        return 0 if parent.isValid() else len(self.listed)
 
     def columnCount(self, parent: Index = _NO_PARENT) -> int:
         return len(self._titles)
@@ -115,16 +149,13 @@ class ToolModel(QAbstractTableModel):
         return flags | Qt.ItemFlag.ItemIsUserCheckable if index.column() == TICK else flags
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        row, column = self.rows[index.row()], index.column()
+        row, column = self.listed[index.row()], index.column()
         if role == Qt.ItemDataRole.DisplayRole:
             return self._words(row, column)
-        if role == _SORTED:
-            return self._sorted(row, column)
         if role == Qt.ItemDataRole.TextAlignmentRole and _is_number(column):
             return RIGHT
         if role == Qt.ItemDataRole.CheckStateRole and column == TICK:
-            is_loaded = self.crib.tool(row.name) is not None
-            return Qt.CheckState.Checked if is_loaded else Qt.CheckState.Unchecked
+            return Qt.CheckState.Checked if self.is_loaded(row) else Qt.CheckState.Unchecked
         if role == Qt.ItemDataRole.ToolTipRole:
             return row.title or row.name
         return None
@@ -132,55 +163,31 @@ class ToolModel(QAbstractTableModel):
     def setData(self, index: Index, value: Any, role: int = Qt.ItemDataRole.EditRole) -> bool:
         if role != Qt.ItemDataRole.CheckStateRole or index.column() != TICK:
             return False
-        self.ticked.emit(self.rows[index.row()].name, Qt.CheckState(value) == Qt.CheckState.Checked)
+        self.ticked.emit(
+            self.listed[index.row()].name, Qt.CheckState(value) == Qt.CheckState.Checked
+        )
         return True
 
     def _words(self, row: ToolRow, column: int) -> str:
         if column == TICK:
             return ""
         if column == NUMBER:
-            return str(self._sorted(row, column) or "")
+            return str(self._value(row, column) or "")
         if column in (NAME, FORM):
             return row.name if column == NAME else tr(row.form)
-        value = self._sorted(row, column)
+        value = self._value(row, column)
         return "" if row.form == _TURNING and value in (0.0, math.inf) else amount(value, 3)
 
-    def _sorted(self, row: ToolRow, column: int) -> Any:
-        loaded = self.crib.tool(row.name)
-        return (
-            loaded is None,
-            loaded.number if loaded is not None else 0,
-            row.name,
-            row.form,
-            row.diameter or math.inf,
-            row.corner_radius,
-            row.flute_length,
-            row.stickout,
-            row.gauge_length,
-        )[column]
+    def _value(self, row: ToolRow, column: int) -> Any:
+        if column in (TICK, NUMBER):
+            number = self._numbers.get(row.name, 0)
+            return number == 0 if column == TICK else number
+        value = getattr(row, _FIELDS[column])
+        return value or math.inf if column == DIAMETER else value
 
 
-class ToolFilter(QSortFilterProxyModel):
-    """The tools that a query takes, sorted by a column."""
-
-    def __init__(self, model: ToolModel) -> None:
-        super().__init__()
-        self._model, self._query = model, ToolQuery()
-        self.setSourceModel(model)
-        self.setSortRole(_SORTED)
-
-    def use(self, query: ToolQuery) -> None:
-        """List what a query takes."""
-        self._query = query
-        self.invalidate()
-
-    def filterAcceptsRow(self, source_row: int, source_parent: Index) -> bool:
-        row = self._model.rows[source_row]
-        return self._query.takes(row, self._model.crib.tool(row.name) is not None)
-
-
-def tool_view(model: ToolFilter) -> QTableView:
-    """Return the table over a filter, as the window's other tables look."""
+def tool_view(model: ToolModel) -> QTableView:
+    """Return the table of a model, as the window's other tables look."""
     made = QTableView()
     made.setObjectName("toolTable")
     made.setModel(model)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
@@ -20,8 +22,13 @@ from trunnion_gui.look.colours import Theme
 from trunnion_gui.shop.exchange_page import ExchangePage
 from trunnion_gui.shop.tool_details import ToolDetails
 from trunnion_gui.shop.tool_filter import ToolFilterBar
-from trunnion_gui.shop.tool_table import NAME, ToolFilter, ToolModel, tool_view
-from trunnion_gui.worker.shop_requests import FormatRow, LibraryExchange, ToolRow
+from trunnion_gui.shop.tool_table import NAME, ToolModel, tool_view
+from trunnion_gui.worker.shop_requests import (
+    FormatRow,
+    LibraryExchange,
+    ShopView,
+    ToolRow,
+)
 
 _TABLE_WIDTH, _DETAILS_WIDTH = 700, 410
 """Pixels at first; the table takes what the window is wider."""
@@ -36,8 +43,7 @@ class ToolsPage(QWidget):
         self.setAcceptDrops(True)
         self.filter = ToolFilterBar(document)
         self.model = ToolModel()
-        self.listed = ToolFilter(self.model)
-        self.table = tool_view(self.listed)
+        self.table = tool_view(self.model)
         self.details = ToolDetails(self._shop)
         self.exchange = ExchangePage()
         self.read, self.write = QPushButton(tr("Import…")), QPushButton(tr("Export…"))
@@ -45,8 +51,11 @@ class ToolsPage(QWidget):
         self.write.setToolTip(tr("Write the selected tools as a library of another program"))
         self._split, self._stack = QSplitter(Qt.Orientation.Horizontal), QStackedWidget()
         self._wanted: tuple[str, ...] = ()
+        self._view: ShopView | None = None
         self._arrange()
-        self.filter.changed.connect(self._filter)
+        self.filter.changed.connect(self._list)
+        self.model.modelAboutToBeReset.connect(self._remember)
+        self.model.modelReset.connect(self._select_again)
         self.table.selectionModel().selectionChanged.connect(lambda *_: self._select())
         self.model.ticked.connect(self._tick)
         self.read.clicked.connect(self._choose_library)
@@ -68,14 +77,10 @@ class ToolsPage(QWidget):
         view = self._shop.view
         if view is None:
             return
-        names = self.selected_names()
-        is_other = view.tools is not self.model.rows
-        self.model.show_tools(view.tools, self._shop.crib)
-        self.filter.show_view(view)
-        self._filter()
-        if is_other:
-            self._select_names(names)
-        self._select()
+        if view is not self._view:
+            self._view = view
+            self.filter.show_view(view)
+        self._list()
 
     def selected_names(self) -> tuple[str, ...]:
         """Return the names of the selected tools, in the order of the table."""
@@ -162,32 +167,42 @@ class ToolsPage(QWidget):
         else:
             self._shop.take(name)
 
-    def _filter(self) -> None:
-        self.listed.use(self.filter.query)
-        self.filter.show_count(
-            self.listed.rowCount(), len(self.model.rows), len(self._shop.crib.tools)
-        )
+    def _list(self) -> None:
+        """List what the filter asks for."""
+        view, crib = self._shop.view, self._shop.crib
+        if view is None:
+            return
+        self.model.show_tools(view.tools, crib, self.filter.query)
+        self.filter.show_count(len(self.model.listed), len(view.tools), len(crib.tools))
+        self._select()
 
     def _selected(self) -> list[ToolRow]:
-        rows = sorted(i.row() for i in self.table.selectionModel().selectedRows(NAME))
-        return [
-            self.model.rows[self.listed.mapToSource(self.listed.index(r, NAME)).row()] for r in rows
-        ]
+        rows = self.table.selectionModel().selectedRows(NAME)
+        return [self.model.listed[r] for r in sorted(i.row() for i in rows)]
 
     def _select(self) -> None:
         rows = self._selected()
         self.details.show_tool(rows[0] if rows else None)
         self.write.setEnabled(bool(rows))
 
-    def _select_names(self, names: tuple[str, ...]) -> None:
-        """Select tools by their names after the rows are others: those just taken over, else those that were selected."""
-        wanted, self._wanted = set(self._wanted or names), ()
-        for row in range(self.listed.rowCount()):
-            index = self.listed.index(row, NAME)
-            if index.data() in wanted:
-                self.table.selectRow(row)
-                self.table.scrollTo(index)
-                return
+    def _remember(self) -> None:
+        """Remember which tools are selected before the rows change, unless others are wanted then."""
+        self._wanted = self._wanted or self.selected_names()
+
+    def _select_again(self) -> None:
+        wanted, self._wanted = self._wanted, ()
+        self.select_tools(wanted)
+
+    def select_tools(self, names: Sequence[str]) -> None:
+        """Select the listed ones of some tools, and bring the first into view."""
+        wanted, model = frozenset(names), self.table.selectionModel()
+        flags = model.SelectionFlag.Select | model.SelectionFlag.Rows
+        found = [n for n, row in enumerate(self.model.listed) if row.name in wanted]
+        for row in found:
+            model.select(self.model.index(row, NAME), flags)
+        if found:
+            self.table.scrollTo(self.model.index(found[0], NAME))
+        self._select()
 
     def _arrange(self) -> None:
         left = QWidget()
