@@ -113,7 +113,7 @@ def _own(draw: st.DrawFn, form: str) -> dict[str, Any]:
             widest + draw(share(0.05, 0.5)) * math.sqrt(flank**2 - (flank - diameter / 2) ** 2)
         )
     elif form == "t-slot":
-        own["corner_radius"] = of(draw(share(0.0, 0.5)) * min(flutes, diameter))
+        own["corner_radius"] = of(draw(share(0.0, 0.45)) * min(flutes, diameter))
     elif form == "drill":
         own["point_angle"] = float(draw(st.integers(60, 180)))
         flutes = of(point_height(diameter, own["point_angle"]) + draw(mm(0.1, 60)))
