@@ -44,6 +44,7 @@ from trunnion.plan.library.settings import LibrarySettings
 from trunnion.plan.loaded_tools import loaded_findings, planning_shop
 from trunnion.plan.manual.manual_operations import with_manual_operations
 from trunnion.plan.repair.contract import RepairJob
+from trunnion.plan.settings import KEPT_KEYS
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.size import size_table
 from trunnion.post.settings import PostSettings
@@ -216,7 +217,9 @@ def _optimize(session: Session, context: Context, progress: Progress) -> Result:
     progress.at(0.0, "speeds and feeds")
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
-    routed = session.process
+    routed, found = session.process, session.recognition
+    if found is not None:
+        routed = on_operations(routed, found)
     balanced = balance(
         routed,
         context.shop,
@@ -287,7 +290,7 @@ def _operations_without_data(session: Session) -> tuple[Any, ...]:
             o.strategy,
             o.all_features,
             o.tool,
-            dict(o.choices),
+            {k: v for k, v in o.choices.items() if not k.startswith(KEPT_KEYS)},
             o.by_hand,
             o.suppressed,
         )
@@ -372,6 +375,7 @@ STEP_TABLE: tuple[Step, ...] = (
         reads=lambda s, b: (
             _record_key(s, "route"),
             _operations_without_data(s),
+            *allowance_words(s.recognition),
             _strategy_settings(s),
             b.shop.digest,
         ),

@@ -227,9 +227,10 @@ def on_operations(process: ProcessTree, recognition: Recognition) -> ProcessTree
     """
     findings: list[Finding] = []
     operations = tuple(on_operation(o, recognition, findings) for o in process.operations)
-    if operations == process.operations and not findings:
+    fresh = tuple(f for f in findings if f not in process.findings)
+    if operations == process.operations and not fresh:
         return process
-    return replace(process, operations=operations, findings=(*process.findings, *findings))
+    return replace(process, operations=operations, findings=(*process.findings, *fresh))
 
 
 def on_operation(

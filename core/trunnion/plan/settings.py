@@ -7,6 +7,9 @@ from trunnion.settings import setting, settings
 HALVES = "route.sides.halves"
 """Key of an operation's choices: true where it cuts the half of its feature that lies nearer to the tool, another setup the other one."""
 
+KEPT_KEYS = "feature."
+"""How keys of an operation's choices begin that say what its features keep: the route gives them, and each change of operations anew."""
+
 
 @settings("route")
 class RouteSettings:

@@ -127,13 +127,15 @@ def test_it_is_kept_when_recognition_runs_again_and_in_a_project(tmp_path):
 
 
 def test_a_copy_on_another_feature_leaves_what_that_one_keeps():
-    _, session = kept()
+    engine, session = kept()
     found, pocket = session.recognition, pocket_with_island(session)
     other = next(f.id for f in found.of_kind("pocket") if f.id != pocket)
-    process, id = with_copy_on(session.process, f"wall-{pocket}", other, found)
-    assert KEPT_ON_WALLS not in process.operation(id).choices
-    process, id = with_copy_on(session.process, f"wall-{other}", pocket, found)
-    assert process.operation(id).choices[KEPT_ON_WALLS] == WALL_KEPT
+    process, there = with_copy_on(session.process, f"wall-{pocket}", other, found)
+    process, here = with_copy_on(process, f"wall-{other}", pocket, found)
+    planned = engine.run(replace(session, process=process), until="optimize")
+    assert KEPT_ON_WALLS not in planned.process.operation(there).choices
+    assert planned.process.operation(here).choices[KEPT_ON_WALLS] == WALL_KEPT
+    assert engine.states(planned)["optimize"] == "done"
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from trunnion.findings import BadInput, Refused
 from trunnion.model.feature import Feature, Recognition
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
-from trunnion.plan.allowances import on_operation
+from trunnion.plan.settings import KEPT_KEYS
 from trunnion.plan.setups.frames import UPRIGHT
 
 _SUFFIX = re.compile(r"-copy(-\d+)?$")
@@ -52,8 +52,9 @@ def with_copy_on(
         setup=alike.setup,
         direction=alike.direction,
         after=tuple(_needs_on(feature, original, process)),
+        # What the other feature keeps is no matter of this one.
+        choices={k: v for k, v in original.choices.items() if not k.startswith(KEPT_KEYS)},
     )
-    made = on_operation(made, found, [])
     row = {o.id: n for n, o in enumerate(process.operations)}
     return _inserted(process, made, max(row[o] for o in (*made.after, alike.id)) + 1), made.id
 
