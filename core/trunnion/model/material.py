@@ -35,7 +35,8 @@ class Material:
     `speed_rough`, `speed_finish` vc m/min; `feeds` rows (diameter, fz smallest, fz largest) mm; `force` k_c1.1 N/mm2 with exponent
     `force_exponent`;
     `depth_factor` ap over D and `width_factor` ae over D for roughing, `slot_factor` ap over D up to which a cutter may be fed through a
-    slot, at the feed that the spindle bears there (0: as `depth_factor`); `entry_angle` degrees that helices and ramps into full material
+    slot, at the feed that the spindle bears there (0: as `depth_factor`); `layer_width_factor` ae over D in layers that such slots open
+    (0: as `width_factor`); `entry_angle` degrees that helices and ramps into full material
     go down at (0: nothing is known of it); `density` kg/dm3. `speed_range` vc m/min, the smallest and the
     largest speed that cutters bear, and `life`: None where the catalogue has none. `feed_share` says where between smallest and largest
     the tables' fz lies, `feed_range` between which such shares another may be chosen.
@@ -58,12 +59,18 @@ class Material:
     speed_range: tuple[float, float] | None = None
     life: TaylorLife | None = None
     slot_factor: float = 0.0
+    layer_width_factor: float = 0.0
     entry_angle: float = 0.0
 
     @property
     def deepest_factor(self) -> float:
         """The larger of both depths of cut over D."""
         return max(self.depth_factor, self.slot_factor)
+
+    @property
+    def widest_factor(self) -> float:
+        """The larger of both widths of cut over D."""
+        return max(self.width_factor, self.layer_width_factor)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

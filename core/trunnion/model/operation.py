@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -25,8 +26,9 @@ class CuttingData:
     its feed in full width that the spindle leaves a strategy; `peak_power` kW and `peak_torque` Nm at the largest engagement that the
     strategy can meet, and `peak_at`, in words, where that is; `routed_depth` mm: the depth that the route chose where
     the spindle allows less (0: the same); `entry_angle` degrees: the slope that the material bears helices and ramps at (0: nothing is
-    known of it). Where spindle speed and feed were chosen by the optimiser: `handbook_spindle` 1/min and
-    `handbook_feed` mm/min of the material's tables (0 elsewhere), and `bound_by`, what stops a quicker choice, in words.
+    known of it); `ramp_share`: what of the feed helices and ramps are gone down with (0: they plunge). Where spindle speed and feed were
+    chosen by the optimiser: `handbook_spindle` 1/min and `handbook_feed` mm/min of the material's tables (0 elsewhere), and `bound_by`,
+    what stops a quicker choice, in words.
     Of a tool in a locked spindle `spindle` is the table's speed, `feed` the ground's under it and `feed_per_tooth` the feed in mm a turn of
     the table.
     `spindle_mode` and `feed_mode` say what a program gives of them: at a constant surface speed `spindle` is that of a rotating tool's own
@@ -58,6 +60,7 @@ class CuttingData:
     handbook_spindle: float = added(0.0, written=False)
     handbook_feed: float = added(0.0, written=False)
     bound_by: str = added("", written=False)
+    ramp_share: float = added(0.0, written=False)
 
     def __post_init__(self) -> None:
         if self.spindle_mode is SpindleMode.SURFACE and self.highest_spindle <= 0.0:
@@ -67,6 +70,12 @@ class CuttingData:
     def feed_per_revolution(self) -> float:
         """The feed in mm a revolution."""
         return per_revolution(self.feed, self.spindle)
+
+    def ramp_feed(self, slope: float) -> float:
+        """Return the feed in mm/min along a helix or ramp of a slope (rad): its share of the feed across, while it goes down no faster than
+        a plunge; a plunge's feed at least."""
+        down = self.plunge_feed / math.sin(slope) if slope > 0.0 else math.inf
+        return max(self.plunge_feed, min(self.ramp_share * self.feed, down))
 
     @property
     def feed_gain(self) -> float:

@@ -72,6 +72,9 @@ def _material(entry: CatalogueEntry) -> Material:
         width_factor=value("width_factor", 0.01, 1.0),
         entry_angle=value("entry_angle", 0.1, 45.0) if entry.has("entry_angle") else 0.0,
         slot_factor=value("slot_factor", 0.01, 5.0) if entry.has("slot_factor") else 0.0,
+        layer_width_factor=value("layer_width_factor", 0.01, 1.0)
+        if entry.has("layer_width_factor")
+        else 0.0,
         speed_range=_speed_range(sourced("speed_range")) if entry.has("speed_range") else None,
         life=_life(sourced("tool_life")) if entry.has("tool_life") else None,
         source="; ".join(f"{name}: {words}" for name, words in sources.items()),

@@ -17,7 +17,9 @@ from trunnion.plan.cutting.milling import (
     chip_thinning,
     cutting_data,
     layer_depth,
+    layer_width,
     roughing_depth,
+    roughing_width,
     slenderness,
     table_feed,
 )
@@ -153,3 +155,36 @@ def test_data_of_every_material_keep_the_machines_limits(material):
             and data.power <= data.power_limit * 1.000001
             and data.spindle <= 24000
         )
+
+
+def test_layers_in_aluminium_are_half_the_diameter_wide_and_in_titanium_as_other_roughing():
+    cutter, titanium = tool("AL3-regular D20 R0"), SHOP.material("Ti-6Al-4V")
+    assert layer_width(cutter, ALUMINIUM, DEFAULT) == approx(10.0)
+    assert roughing_width(cutter, ALUMINIUM, DEFAULT) == approx(5.0)
+    assert layer_width(cutter, titanium, DEFAULT) == roughing_width(cutter, titanium, DEFAULT)
+    narrow = replace(DEFAULT, width_share=0.5)
+    assert layer_width(cutter, ALUMINIUM, narrow) == approx(5.0)
+
+
+def test_ramps_are_fed_at_three_quarters_of_the_feed_and_go_down_no_faster_than_a_plunge():
+    data = cutting_data(
+        tool("AL3-regular D20 R0"), ALUMINIUM, MACHINE, "rough", DEFAULT, 15.0, 10.0
+    )
+    assert data.ramp_feed(math.radians(5.0)) == approx(0.75 * data.feed)
+    # Steeper than about 32 degrees, 0.4 of the feed down is less than that along the slope.
+    steep = math.radians(60.0)
+    assert data.ramp_feed(steep) * math.sin(steep) == approx(data.plunge_feed)
+    assert data.ramp_feed(math.pi / 2.0) == approx(data.plunge_feed)
+    plunged = replace(data, ramp_share=0.0)
+    assert plunged.ramp_feed(math.radians(5.0)) == data.plunge_feed
+
+
+def test_a_lower_limit_on_the_width_narrows_layers_that_were_routed_wider():
+    cutter = tool("AL3-regular D20 R0")
+    data = cutting_data(cutter, ALUMINIUM, MACHINE, "rough", DEFAULT, 15.0, 10.0)
+    rough = replace(operation("rough", "pocket-01", cutter), data=data)
+    setup = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=20.0, machine=MACHINE.name)
+    process = ProcessTree(plan="", material=ALUMINIUM.name, setups=(setup,), operations=(rough,))
+    (same,) = balance(process, SHOP, DEFAULT, TABLES).operations
+    (less,) = balance(process, SHOP, replace(DEFAULT, width_share=0.6), TABLES).operations
+    assert (same.data.width, less.data.width) == (approx(10.0), approx(6.0))

@@ -95,6 +95,14 @@ class CuttingSettings:
         label="Plunge feed",
         help="Feed downwards over the feed across.",
     )
+    ramp_share: float = setting(
+        0.75,
+        unit="of the feed",
+        low=0.02,
+        high=1.0,
+        label="Ramp feed",
+        help="Feed along helices and ramps over the feed across; downwards it is no faster than the plunge feed.",
+    )
     slender: float = setting(
         4.0,
         unit="diameters",
@@ -155,6 +163,11 @@ def _depth(factor: float, tool: Tool, settings: CuttingSettings) -> float:
 def roughing_width(tool: Tool, material: Material, settings: CuttingSettings) -> float:
     """Return the width of cut in mm that a material bears when roughing."""
     return min(material.width_factor * settings.width_share, 1.0) * tool.diameter
+
+
+def layer_width(tool: Tool, material: Material, settings: CuttingSettings) -> float:
+    """Return the width of cut in mm in layers that are opened by slots or come to from outside: what a slot bears, it bears as well."""
+    return min(material.widest_factor * settings.width_share, 1.0) * tool.diameter
 
 
 def within_spindle(
@@ -243,4 +256,5 @@ def cutting_data(
         rules=tuple(rules),
         widest=widest,
         entry_angle=material.entry_angle if kind == ROUGH else 0.0,
+        ramp_share=settings.ramp_share,
     )

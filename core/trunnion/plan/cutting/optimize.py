@@ -17,6 +17,7 @@ from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
     layer_depth,
+    layer_width,
     roughing_depth,
     roughing_width,
 )
@@ -172,7 +173,7 @@ def recomputed(
     depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
     if operation.kind in ROUGHING and operation.kind != "face":
         depth = min(depth, _bears(operation, depth, material, settings))
-        width = min(width, roughing_width(operation.cutter, material, settings))
+        width = min(width, _bears_width(operation, width, material, settings))
     if operation.kind in TABLE_KINDS or operation.cutter.form in TABLE_FORMS:
         data = table_data(operation.kind, operation.cutter, material, machine, shop, settings)
         return replace(operation, data=data)
@@ -200,6 +201,18 @@ def _bears(
     ):
         return layer_depth(tool, material, settings)
     return roughing_depth(tool, material, settings)
+
+
+def _bears_width(
+    operation: Operation, width: float, material: Material, settings: CuttingSettings
+) -> float:
+    """Return the width (mm) that an operation bears under some limits, as `_bears` its depth."""
+    tool = operation.cutter
+    if width > roughing_width(tool, material, choose(CuttingSettings, {})) * (
+        1.0 + tolerance.PARAMETRIC
+    ):
+        return layer_width(tool, material, settings)
+    return roughing_width(tool, material, settings)
 
 
 def turned_again(

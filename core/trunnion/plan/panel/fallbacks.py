@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from trunnion.findings import Finding, face_tags, remark
+from trunnion.model.tool import Tool
+from trunnion.plan.panel.floor_cutters import floor_time
 from trunnion.plan.panel.outline_tasks import without_corners
 from trunnion.plan.panel.tasks import (
     REST,
@@ -169,15 +171,23 @@ def with_floors_behind_roughing(state: PanelPlanState, tasks: Sequence[Operation
             or tool.flute_length >= task.height
         ):
             continue
-        found = candidates(
-            replace(task.requirement, missable=1.0, near=0.0),
-            catalogue(state, task.stage),
-            state.settings.reach_clearance,
-            state.progress,
-        )
-        as_wide = [t for t in found.tools if t.radius >= cleared]
+        whole = [t for t in _floor_tools(state, task, task.requirement) if t.radius >= cleared]
+        if whole:
+            quickest = {t.name: floor_time(state, task, t) for t in whole}
+            state.tools[task.id] = min(whole, key=lambda t: (quickest[t.name], t.name))
+            continue
+        most = replace(task.requirement, missable=1.0, near=0.0)
+        as_wide = [t for t in _floor_tools(state, task, most) if t.radius >= cleared]
         if as_wide:
             state.tools[task.id] = min(as_wide, key=lambda t: (t.radius, -t.corner_radius, t.name))
+
+
+def _floor_tools(
+    state: PanelPlanState, task: OperationTask, requirement: ToolRequirement
+) -> Sequence[Tool]:
+    return candidates(
+        requirement, catalogue(state, task.stage), state.settings.reach_clearance, state.progress
+    ).tools
 
 
 def _cleared(state: PanelPlanState, task: OperationTask, tasks: Sequence[OperationTask]) -> float:

@@ -20,6 +20,7 @@ from trunnion.plan.cutting.milling import (
     CuttingSettings,
     cutting_data,
     layer_depth,
+    layer_width,
     roughing_depth,
     roughing_width,
 )
@@ -39,6 +40,7 @@ from trunnion.plan.panel.feasibility import (
     plannable,
     without_lonely_ribs,
 )
+from trunnion.plan.panel.floor_cutters import FLOOR_WIDTH, quicker_floors
 from trunnion.plan.panel.rules import NEEDED, SWARF, TASK_MAKERS
 from trunnion.plan.panel.side_settings import SidesSettings
 from trunnion.plan.panel.sides import shared_out
@@ -70,8 +72,8 @@ from trunnion.units import trimmed
 
 __all__ = ["RouteSettings", "make_route"]
 
-FACE_WIDTH, FLOOR_WIDTH, WALL_STEP = 0.7, 0.6, 1.5
-"""Width of a face mill's path over its diameter, of a floor's over the cutter's flat, and axial step of a wall over the diameter."""
+FACE_WIDTH, WALL_STEP = 0.7, 1.5
+"""Width of a face mill's path and axial step of a wall, both over the diameter."""
 
 
 LAYERED = ("rough", "profile_rough")
@@ -200,6 +202,7 @@ def _with_cutters(
             elif task.stage.cutter not in REST:
                 state.findings.append(no_cutter(task, found))
         state.tools |= covered_by_few(fits, [*state.loaded, *state.tools.values()])
+        state.tools |= quicker_floors(state, served, fits)
         tasks += served
     with_floors_behind_roughing(state, tasks)
     return with_falling_sizes(state, tasks)
@@ -315,7 +318,8 @@ def _engagement(
     kind, allowance = task.stage.kind, state.settings.wall_allowance
     bears = layer_depth if kind in LAYERED else roughing_depth
     rough_depth = _even(task.height, bears(tool, state.material, cutting))
-    rough_width = roughing_width(tool, state.material, cutting)
+    takes = layer_width if kind in LAYERED else roughing_width
+    rough_width = takes(tool, state.material, cutting)
     if kind == "face":
         return _even(task.height, min(tool.flute_length / 2, rough_depth)), min(
             FACE_WIDTH * tool.diameter, task.width

@@ -81,7 +81,7 @@ def helix(
         for half in (0, 1)
     ]
     travel(builder, sides[0], begin)
-    feed = builder.data.plunge_feed
+    feed = builder.data.ramp_feed(angle)
     for n in range(1, 2 * turns + 1):
         height = begin - (begin - z) * n / (2 * turns)
         builder.arc((*sides[n % 2], height), centre, math.pi, feed, Mark.ENTRY)
@@ -101,7 +101,7 @@ def ramp_round(
     travel(builder, opened.start, begin)
     for n in range(rounds):
         high, low = (begin - (begin - z) * k / rounds for k in (n, n + 1))
-        builder.curve(opened, low, builder.data.plunge_feed, Mark.ENTRY, start_z=high)
+        builder.curve(opened, low, builder.data.ramp_feed(angle), Mark.ENTRY, start_z=high)
 
 
 def ramp_along(builder: PathBuilder, piece: Curve, top: float, z: float, angle: float) -> None:
@@ -115,5 +115,9 @@ def ramp_along(builder: PathBuilder, piece: Curve, top: float, z: float, angle: 
     for n in range(legs):
         high, low = (begin - (begin - z) * k / legs for k in (n, n + 1))
         builder.curve(
-            part if n % 2 == 0 else back, low, builder.data.plunge_feed, Mark.ENTRY, start_z=high
+            part if n % 2 == 0 else back,
+            low,
+            builder.data.ramp_feed(angle),
+            Mark.ENTRY,
+            start_z=high,
         )
