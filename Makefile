@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests start processes by the hundred; without compiled files each would compile all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: packages setup demo test test-long bench screenshots run check lint docs clean
+.PHONY: packages setup demo test test-long bench screenshots run check lint docs clean wheel
 
 # The environment is made anew when the lock or the project file changes.
 .venv/made: requirements.lock pyproject.toml | packages
@@ -60,6 +60,10 @@ docs: setup
 	$(BIN)/trunnion settings --markdown > docs/settings.md
 	$(BIN)/python -m pip install -q --disable-pip-version-check "mkdocs-material>=9.6"
 	$(BIN)/mkdocs build -q --strict
+
+# The wheel alone, with what it needs by name and range; `pip install` takes it.
+wheel: setup
+	$(BIN)/python -m hatchling build -t wheel -d dist
 
 clean:
 	rm -rf out build dist .mypy_cache .ruff_cache .hypothesis bench.json
