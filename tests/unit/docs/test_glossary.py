@@ -20,8 +20,8 @@ access actions app appearance arrays atomic attributes bars base batch build bui
 check child choice class cli click code column command common compiled compiling context contract
 count declared dialog display document drawing drawn edits engine example export fallback file finder foldout form
 gc gui handlers history html i18n icons identity info input interpreter job judge keys kind label
-language layout legend look main manual mapping members memory menus message metadata metric model
-notice number numbers offer owner painted palette pane parameters parser picker picture pipeline
+language layout legend locator look main manual mapping members memory menus message metadata metric model
+module notice number numbers offer owner painted palette pane parameters parser picker picture pipeline
 player page plot preferences printed problem project properties query read readers reading record recovery reply
 report request requirement result role rules scene screen screenshots search selection severity
 shared sharing snapshot source state statements status storage store sync table text theme threads
