@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests start processes by the hundred; without compiled files each would compile all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: packages setup demo test test-long bench screenshots run check lint docs clean wheel
+.PHONY: packages setup demo test test-long bench screenshots run check lint docs clean wheel deb appimage
 
 # The environment is made anew when the lock or the project file changes.
 .venv/made: requirements.lock pyproject.toml | packages
@@ -30,9 +30,10 @@ demo: setup
 	@echo "Open $(OUT)/B1.report.html"
 
 lint: setup
-	$(BIN)/ruff format --check -q core gui resources tests
-	$(BIN)/ruff check core gui resources tests
+	$(BIN)/ruff format --check -q core gui resources tests installer
+	$(BIN)/ruff check core gui resources tests installer
 	$(BIN)/mypy core/trunnion gui/trunnion_gui
+	$(BIN)/mypy installer
 	$(BIN)/lint-imports
 
 test: setup lint
@@ -63,7 +64,15 @@ docs: setup
 
 # The wheel alone, with what it needs by name and range; `pip install` takes it.
 wheel: setup
+	rm -f dist/*.whl
 	$(BIN)/python -m hatchling build -t wheel -d dist
+
+# Installers of this machine's system; docs/installing.md says what they want and what is in them.
+deb: wheel
+	$(BIN)/python -m installer.deb dist/*.whl
+
+appimage: wheel
+	$(BIN)/python -m installer.appimage dist/*.whl $(if $(RUNTIME),--runtime $(RUNTIME))
 
 clean:
 	rm -rf out build dist .mypy_cache .ruff_cache .hypothesis bench.json
