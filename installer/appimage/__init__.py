@@ -1,0 +1,1 @@
+"""The AppImage, and the folder in it: `python -m installer.appimage WHEEL`."""
