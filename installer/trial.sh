@@ -62,6 +62,6 @@ case "$file" in
     inside apt-get purge -y -qq trunnion >/dev/null
     files >"$root.after"
     echo "What came since the package was installed and is still there:"
-    diff "$root.before" "$root.after" | sed -n 's/^> //p' | grep -v "^./home/miller/out/" | cut -d/ -f1-7 | sort | uniq -c || true
+    diff "$root.before" "$root.after" | sed -n 's/^> //p' | grep -v "^./home/miller/out/" | cut -d/ -f1-5 | sort | uniq -c || true
     ;;
 esac

@@ -115,7 +115,10 @@ def image(app: Path, runtime: bytes, target: Path, seconds: int) -> Path:
     words = ["mksquashfs", str(app), str(squashed), "-root-owned", "-noappend", "-quiet"]
     dated = os.environ | {"SOURCE_DATE_EPOCH": str(seconds)}
     done = subprocess.run(
-        [*words, "-no-progress", "-comp", "zstd"], env=dated, capture_output=True, check=False
+        [*words, "-no-progress", "-comp", "zstd", "-Xcompression-level", "6"],
+        env=dated,
+        capture_output=True,
+        check=False,
     )
     if done.returncode:
         stop(f"mksquashfs could not pack {app}: {done.stderr.decode(errors='replace').strip()}")
