@@ -23,6 +23,7 @@ def test_the_settings_page_is_what_the_declarations_say(capsys):
         "CONTRIBUTING.md",
         "docs/index.md",
         "docs/batch.md",
+        "docs/installing.md",
         "docs/scripts.md",
         "docs/how-a-program-comes-about.md",
         "docs/verification.md",
