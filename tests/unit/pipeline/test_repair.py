@@ -37,7 +37,7 @@ def _planted(session, **changes):
     for operation in process.operations:
         if operation.kind in changes:
             process = process.with_operation(changes[operation.kind](operation))
-    return replace(session, process=numbered(process))
+    return replace(session, process=numbered(process, {}))
 
 
 def _rejected(engine, session):

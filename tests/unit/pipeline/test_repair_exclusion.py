@@ -46,7 +46,7 @@ def _planted(session):
     wall = session.process.operation(WALL)
     tool = replace(wall.cutter, name="short", flute_length=10.0, neck_length=12.0, stickout=17.0)
     process = session.process.with_operation(replace(wall, tool=tool))
-    return replace(session, process=numbered(process))
+    return replace(session, process=numbered(process, {}))
 
 
 def _rejected(engine, session):

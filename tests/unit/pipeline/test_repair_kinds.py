@@ -204,7 +204,7 @@ def test_a_finishing_operation_on_curved_faces_keeps_out_of_what_it_avoids(dome)
 
     def laid(operation):
         process = replace(session.process, operations=(replace(operation, after=()),))
-        made = engine.run(replace(session, process=numbered(process)), "toolpath")
+        made = engine.run(replace(session, process=numbered(process, {})), "toolpath")
         path = made.paths[0].path
         return made, path.position[path.motion != Motion.RAPID]
 
