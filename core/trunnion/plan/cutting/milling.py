@@ -101,7 +101,7 @@ class CuttingSettings:
         low=0.02,
         high=1.0,
         label="Ramp feed",
-        help="Feed along helices and ramps over the feed across; downwards it is no faster than the plunge feed.",
+        help="Feed of roughing along helices and ramps over the feed across; downwards it is no faster than the plunge feed.",
     )
     slender: float = setting(
         4.0,
@@ -256,5 +256,6 @@ def cutting_data(
         rules=tuple(rules),
         widest=widest,
         entry_angle=material.entry_angle if kind == ROUGH else 0.0,
-        ramp_share=settings.ramp_share,
+        # Finishing enters thin skins: there a ramp takes no time, and would be the largest removal of the operation.
+        ramp_share=settings.ramp_share if kind in ROUGHING else 0.0,
     )
