@@ -93,6 +93,7 @@ def test_what_is_not_used_leaves_digests_and_json_as_they_were():
         "handbook_spindle",
         "handbook_feed",
         "bound_by",
+        "ramp_share",
     }
     assert digest(DATA) == "90568a01d1978e9b"
     by_turns = replace(DATA, feed_mode=FeedMode.REVOLUTION)
