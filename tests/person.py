@@ -6,11 +6,21 @@ import time
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 
 LEFT = Qt.MouseButton.LeftButton
 POINT_S, CLICK_S, KEY_S, HANDS_S, THINK_S = 1.10, 0.20, 0.28, 0.40, 1.35
 """s: to point at a target, to click, to press a key, to move a hand between keys and mouse, and to decide what next: the keystroke-level
 model (Card, Moran and Newell 1980), of a person who types without error and knows what to do."""
+
+
+def typed(field, words):
+    """Type words into a line, as a person does, and leave it by the return key."""
+    field.setFocus()
+    field.selectAll()
+    QTest.keyClicks(field, words)
+    QTest.keyClick(field, Qt.Key.Key_Return)
+    QApplication.processEvents()
 
 
 class Person:

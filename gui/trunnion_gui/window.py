@@ -36,6 +36,7 @@ from trunnion_gui.storage import preferences
 from trunnion_gui.storage.recovery import Recovery
 from trunnion_gui.storage.unsaved import UnsavedWork
 from trunnion_gui.viewport_pane import ViewportPane
+from trunnion_gui.widgets.dropped_files import accept_files, dropped_file
 from trunnion_gui.widgets.finder import Finder
 from trunnion_gui.widgets.panel import Panel
 from trunnion_gui.widgets.status import StatusBar
@@ -120,14 +121,11 @@ class Window(QMainWindow):
     # Qt's events
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        if event.mimeData().hasUrls():
-            event.acceptProposedAction()
+        accept_files(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
-        paths = [u.toLocalFile() for u in event.mimeData().urls() if u.isLocalFile()]
-        if paths:
-            event.acceptProposedAction()
-            self.document.files.open(paths[0])
+        if file := dropped_file(event):
+            self.document.files.open(file)
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from PySide6.QtCore import Qt
-from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
 
 from kept_parts import ribbed_file
+from person import typed
 from trunnion import registry
 from trunnion.plan.contract import AllowancePlanner
 from trunnion_gui.edits import with_choice
@@ -30,27 +28,17 @@ def fields(window):
     return window.docks.properties.allowance
 
 
-def typed(window, key, words) -> None:
-    """Type words into a field of what is kept, as a person does, and leave it by the return key."""
-    field = fields(window).form.field(key)
-    field.setFocus()
-    field.selectAll()
-    QTest.keyClicks(field, words)
-    QTest.keyClick(field, Qt.Key.Key_Return)
-    QApplication.processEvents()
-
-
 def test_an_amount_typed_on_two_pockets_is_one_entry_and_is_undone(recognised, idle):
     window = recognised
     before, ids = window.document.session, ("pocket-01", "pocket-02")
     assert window.document.selection.select_ids(ids)
     assert fields(window).isVisibleTo(window)
-    typed(window, WALL, "0.3")
+    typed(fields(window).form.field(WALL), "0.3")
     idle(window)
     found = window.document.shown.recognition
     assert [found.feature(id).attributes["wall_allowance"] for id in ids] == [0.3, 0.3]
     # The other amount stays as it was.
-    typed(window, FLOOR, "0.2")
+    typed(fields(window).form.field(FLOOR), "0.2")
     idle(window)
     kept = window.document.feature("pocket-01").attributes
     assert (kept["wall_allowance"], kept["floor_allowance"]) == (0.3, 0.2)
@@ -65,7 +53,7 @@ def test_an_amount_that_a_feature_can_not_keep_is_refused_in_words(recognised, i
     window = recognised
     before = window.document.session
     window.document.selection.select_feature("profile-01")
-    typed(window, FLOOR, "0.3")
+    typed(fields(window).form.field(FLOOR), "0.3")
     idle(window)
     assert window.document.session is before
     assert "profile-01 has no floor" in window.viewport.notice.text

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from PySide6.QtCore import Qt
-from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
 
 from holed import hole, plate
+from person import typed
 from trunnion_gui.docks.hole_demand import DEPTH, FIT, THREAD
 from trunnion_gui.edits import with_choice
 
@@ -33,22 +31,12 @@ def fields(window):
     return window.docks.properties.demand
 
 
-def typed(window, key, words) -> None:
-    """Type words into a field of what is demanded, as a person does, and leave it by the return key."""
-    field = fields(window).form.field(key)
-    field.setFocus()
-    field.selectAll()
-    QTest.keyClicks(field, words)
-    QTest.keyClick(field, Qt.Key.Key_Return)
-    QApplication.processEvents()
-
-
 def test_a_fit_typed_on_two_holes_is_one_entry_and_is_undone(recognised, idle):
     window, ids = recognised, holes(recognised, 10.0)
     before = window.document.session
     assert window.document.selection.select_ids(ids)
     assert fields(window).isVisibleTo(window)
-    typed(window, FIT, "H7")
+    typed(fields(window).form.field(FIT), "H7")
     idle(window)
     found = window.document.shown.recognition
     assert [found.feature(id).attributes["fit"] for id in ids] == ["H7", "H7"]
@@ -63,11 +51,11 @@ def test_a_fit_typed_on_two_holes_is_one_entry_and_is_undone(recognised, idle):
 def test_a_thread_takes_the_place_of_a_fit_and_is_planned(recognised, idle):
     window, (id,) = recognised, holes(recognised, 6.8)
     window.document.selection.select_feature(id)
-    typed(window, FIT, "H7")
+    typed(fields(window).form.field(FIT), "H7")
     idle(window)
-    typed(window, THREAD, "M8")
+    typed(fields(window).form.field(THREAD), "M8")
     idle(window)
-    typed(window, DEPTH, "10")
+    typed(fields(window).form.field(DEPTH), "10")
     idle(window)
     feature = window.document.feature(id)
     assert "fit" not in feature.attributes and feature.attributes["thread"] == "M8"
@@ -82,7 +70,7 @@ def test_a_thread_that_does_not_fit_is_refused_in_words_and_nothing_changes(reco
     window, (id,) = recognised, holes(recognised, 6.8)
     before = window.document.session
     window.document.selection.select_feature(id)
-    typed(window, THREAD, "M6")
+    typed(fields(window).form.field(THREAD), "M6")
     idle(window)
     assert window.document.session is before
     assert "M6 needs a bore of" in window.viewport.notice.text

@@ -24,6 +24,7 @@ from trunnion.plan.freeform.drive import SurfaceDrive
 from trunnion.plan.freeform.keys import ALLOWANCE, KEPT
 from trunnion.plan.prismatic.drive import KEPT_ON_FLOORS, KEPT_ON_WALLS, PlaneDrive
 from trunnion.plan.prismatic.regions import SectionSource, floor_fillet
+from trunnion.plan.settings import KEPT_KEYS
 from trunnion.registry import STRATEGIES
 from trunnion.settings import Value, setting, settings
 from trunnion.units import trimmed
@@ -226,20 +227,18 @@ def on_operations(process: ProcessTree, recognition: Recognition) -> ProcessTree
     finish; roughing keeps the larger one.
     """
     findings: list[Finding] = []
-    operations = tuple(on_operation(o, recognition, findings) for o in process.operations)
+    operations = tuple(_on_operation(o, recognition, findings) for o in process.operations)
     fresh = tuple(f for f in findings if f not in process.findings)
     if operations == process.operations and not fresh:
         return process
     return replace(process, operations=operations, findings=(*process.findings, *fresh))
 
 
-def on_operation(
+def _on_operation(
     operation: Operation, recognition: Recognition, findings: list[Finding]
 ) -> Operation:
     """Return an operation that leaves what its features keep, as `on_operations`; what is to be told is appended to the findings."""
-    own = {
-        k: v for k, v in operation.choices.items() if k not in (KEPT, KEPT_ON_WALLS, KEPT_ON_FLOORS)
-    }
+    own = {k: v for k, v in operation.choices.items() if not k.startswith(KEPT_KEYS)}
     features = [f for f in recognition if f.id in operation.all_features]
     kept = [allowance_of(f) for f in features]
     wall = max((k.wall_allowance for k in kept), default=0.0)

@@ -23,6 +23,7 @@ from trunnion_gui.shop.exchange_page import ExchangePage
 from trunnion_gui.shop.tool_details import ToolDetails
 from trunnion_gui.shop.tool_filter import ToolFilterBar
 from trunnion_gui.shop.tool_table import NAME, ToolModel, tool_view
+from trunnion_gui.widgets.dropped_files import accept_files, dropped_file
 from trunnion_gui.worker.shop_requests import (
     FormatRow,
     LibraryExchange,
@@ -93,14 +94,11 @@ class ToolsPage(QWidget):
     # Qt's events
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        if event.mimeData().hasUrls():
-            event.acceptProposedAction()
+        accept_files(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
-        paths = [u.toLocalFile() for u in event.mimeData().urls() if u.isLocalFile()]
-        if paths:
-            event.acceptProposedAction()
-            self.read_library(paths[0])
+        if file := dropped_file(event):
+            self.read_library(file)
 
     # libraries
 

@@ -82,6 +82,8 @@ def time_limit(word: str) -> float:
 
 def run(options: argparse.Namespace) -> int:
     """Program the parts, print a line for each as it comes, and how many are released."""
+    if sys.platform == "win32":
+        raise BadCall("batches run on Linux and macOS so far: program the parts one by one")
     if options.scheduler and options.jobs:
         raise BadCall("--jobs is of this computer: with --scheduler its workers say how many")
     check_output(options.output)

@@ -30,14 +30,13 @@ DECIMALS = 9
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CoverageResult:
-    """Coverage and what goes with it; `on_purpose` (s,) are the samples under what is left by intention, `on_tabs` those under tabs."""
+    """Coverage and what goes with it; `on_tabs` (s,) are the samples with what tabs leave on them."""
 
     coverage: float
     reachable: float
     faces: tuple[FaceProof, ...]
     deviation: Deviation
     findings: tuple[Finding, ...]
-    on_purpose: Bools
     on_tabs: Bools
 
 
@@ -89,9 +88,10 @@ def covered(
         finished = np.where(layers.most > 0.0, keeps | at_edge, finished)
     finished &= ~blank_face[samples.face]
     is_open = ~finished & ~blank_face[samples.face] & (residual > 0.0)
-    on_purpose = np.zeros(len(samples), bool) if on_tab is None else on_tab & is_open
+    on_tabs = np.zeros(len(samples), bool) if on_tab is None else on_tab & is_open
+    on_purpose = on_tabs
     if layers is not None:
-        on_purpose |= layers.under_others(residual, is_open, settings.tolerance)
+        on_purpose = on_tabs | layers.under_others(residual, is_open, settings.tolerance)
     open_rows = np.flatnonzero(is_open & ~on_purpose)
     lost = np.zeros(len(samples), bool)
     lost[_unreached(samples, open_rows, sides, tools, settings, progress, machines)] = True
@@ -128,8 +128,7 @@ def covered(
                 else ()
             ),
         ),
-        on_purpose=on_purpose,
-        on_tabs=np.zeros(len(samples), bool) if on_tab is None else on_tab & is_open,
+        on_tabs=on_tabs,
         deviation=Deviation(
             face=tags[samples.face[shown]],
             point=frame.to_world(samples.point[shown]),
