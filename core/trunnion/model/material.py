@@ -36,10 +36,11 @@ class Material:
     `force_exponent`;
     `depth_factor` ap over D and `width_factor` ae over D for roughing, `slot_factor` ap over D up to which a cutter may be fed through a
     slot, at the feed that the spindle bears there (0: as `depth_factor`); `layer_width_factor` ae over D in layers that such slots open
-    (0: as `width_factor`); `entry_angle` degrees that helices and ramps into full material
-    go down at (0: nothing is known of it); `density` kg/dm3. `speed_range` vc m/min, the smallest and the
-    largest speed that cutters bear, and `life`: None where the catalogue has none. `feed_share` says where between smallest and largest
-    the tables' fz lies, `feed_range` between which such shares another may be chosen.
+    (0: as `width_factor`); `engaged_depth_factor` ap over D and `engaged_width_factor` ae over D at constant engagement (0: as
+    `depth_factor` and `width_factor`); `entry_angle` degrees that helices and ramps into full material go down at (0: nothing is known of
+    it); `density` kg/dm3. `speed_range` vc m/min, the smallest and the largest speed that cutters bear, and `life`: None where the
+    catalogue has none. `feed_share` says where between smallest and largest the tables' fz lies, `feed_range` between which such shares
+    another may be chosen.
     """
 
     name: str
@@ -61,6 +62,8 @@ class Material:
     slot_factor: float = 0.0
     layer_width_factor: float = 0.0
     entry_angle: float = 0.0
+    engaged_depth_factor: float = 0.0
+    engaged_width_factor: float = 0.0
 
     @property
     def deepest_factor(self) -> float:
@@ -71,6 +74,16 @@ class Material:
     def widest_factor(self) -> float:
         """The larger of both widths of cut over D."""
         return max(self.width_factor, self.layer_width_factor)
+
+    @property
+    def deepest_engaged_factor(self) -> float:
+        """The depth of cut over D at constant engagement."""
+        return self.engaged_depth_factor or self.depth_factor
+
+    @property
+    def widest_engaged_factor(self) -> float:
+        """The width of cut over D at constant engagement."""
+        return self.engaged_width_factor or self.width_factor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -26,7 +26,9 @@ class CuttingData:
     its feed in full width that the spindle leaves a strategy; `peak_power` kW and `peak_torque` Nm at the largest engagement that the
     strategy can meet, and `peak_at`, in words, where that is; `routed_depth` mm: the depth that the route chose where
     the spindle allows less (0: the same); `entry_angle` degrees: the slope that the material bears helices and ramps at (0: nothing is
-    known of it); `ramp_share`: what of the feed helices and ramps are gone down with (0: they plunge). Where spindle speed and feed were
+    known of it); `ramp_share`: what of the feed helices and ramps are gone down with (0: they plunge); of data for
+    constant engagement `layer_depth` and `layer_width` mm of layers that slots open, and `layer_share` of the feed in them (0: `depth` and
+    `width`); `link_feed` mm/min: the feed of links through what was cleared (0: `feed`). Where spindle speed and feed were
     chosen by the optimiser: `handbook_spindle` 1/min and `handbook_feed` mm/min of the material's tables (0 elsewhere), and `bound_by`,
     what stops a quicker choice, in words.
     Of a tool in a locked spindle `spindle` is the table's speed, `feed` the ground's under it and `feed_per_tooth` the feed in mm a turn of
@@ -61,6 +63,10 @@ class CuttingData:
     handbook_feed: float = added(0.0, written=False)
     bound_by: str = added("", written=False)
     ramp_share: float = added(0.0, written=False)
+    layer_depth: float = added(0.0, written=False)
+    layer_width: float = added(0.0, written=False)
+    layer_share: float = added(1.0, written=False)
+    link_feed: float = added(0.0, written=False)
 
     def __post_init__(self) -> None:
         if self.spindle_mode is SpindleMode.SURFACE and self.highest_spindle <= 0.0:
@@ -76,6 +82,16 @@ class CuttingData:
         a plunge; a plunge's feed at least."""
         down = self.plunge_feed / math.sin(slope) if slope > 0.0 else math.inf
         return max(self.plunge_feed, min(self.ramp_share * self.feed, down))
+
+    @property
+    def is_engaged(self) -> bool:
+        """Whether the data are for constant engagement."""
+        return self.layer_depth > 0.0
+
+    @property
+    def deepest_slot(self) -> float:
+        """How deep in mm the cutter may go in full width."""
+        return min(self.layer_depth, self.depth) if self.is_engaged else self.depth
 
     @property
     def feed_gain(self) -> float:

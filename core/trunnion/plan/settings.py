@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from trunnion.plan.cutting.engaged import BY_TIME, CONSTANT_ENGAGEMENT, CONTOUR_PARALLEL
 from trunnion.settings import setting, settings
 
 HALVES = "route.sides.halves"
@@ -82,6 +83,12 @@ class RouteSettings:
         high=20.0,
         label="Slender walls",
         help="Stickout over diameter from which walls get a larger cutter and only the corners the slender one.",
+    )
+    roughing: str = setting(
+        BY_TIME,
+        choices=(BY_TIME, CONSTANT_ENGAGEMENT, CONTOUR_PARALLEL),
+        label="Roughing",
+        help="How pockets are cleared: at a constant angle of contact, deep and narrow; by passes parallel to the walls; or as is quicker.",
     )
     largest: float = setting(
         20.0,

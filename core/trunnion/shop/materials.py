@@ -75,6 +75,12 @@ def _material(entry: CatalogueEntry) -> Material:
         layer_width_factor=value("layer_width_factor", 0.01, 1.0)
         if entry.has("layer_width_factor")
         else 0.0,
+        engaged_depth_factor=value("engaged_depth_factor", 0.01, 5.0)
+        if entry.has("engaged_depth_factor")
+        else 0.0,
+        engaged_width_factor=value("engaged_width_factor", 0.01, 1.0)
+        if entry.has("engaged_width_factor")
+        else 0.0,
         speed_range=_speed_range(sourced("speed_range")) if entry.has("speed_range") else None,
         life=_life(sourced("tool_life")) if entry.has("tool_life") else None,
         source="; ".join(f"{name}: {words}" for name, words in sources.items()),

@@ -11,6 +11,7 @@ from milling import SETUP, Milled, box_blank, closed_pocket, cutting, mill, roun
 from trunnion.findings import Cancelled, Severity
 from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
+from trunnion.plan.cutting.engaged import BY_TIME, CONSTANT_ENGAGEMENT, CONTOUR_PARALLEL
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contract import Planned
@@ -21,8 +22,17 @@ BLANK = box_blank((-20, -20, -40), (100, 70, 0))
 PLAN = rounded(0, 0, 80, 50, 10)
 
 
+PATTERNS = pytest.mark.parametrize(
+    "pattern", [CONTOUR_PARALLEL, CONSTANT_ENGAGEMENT, BY_TIME], ids=str
+)
+
+
 def cut(
-    drive: PlaneDrive, tool: object, depth: float = 6.0, width: float = 6.0
+    drive: PlaneDrive,
+    tool: object,
+    depth: float = 6.0,
+    width: float = 6.0,
+    pattern: str = CONTOUR_PARALLEL,
 ) -> tuple[Planned, Milled]:
     planned = rough(
         drive,
@@ -30,7 +40,7 @@ def cut(
         cutting(depth, width),
         PlanningStock.of(BLANK, SETUP),
         SETUP,
-        RoughSettings(),
+        RoughSettings(pattern=pattern),
         NO_PROGRESS,
     )
     return planned, Milled((-20, -20), (100, 70), 0.0).cut(planned.path, tool)
@@ -40,20 +50,23 @@ def with_allowances(plan: Region, depth: float, fillet: float = 0.0) -> PlaneDri
     return closed_pocket(plan, depth, fillet, wall_allowance=0.3, floor_allowance=0.3)
 
 
-def test_a_pocket_is_cleared_down_to_the_floors_allowance() -> None:
-    _, milled = cut(with_allowances(PLAN, 20.0), mill(16))
+@PATTERNS
+def test_a_pocket_is_cleared_down_to_the_floors_allowance(pattern: str) -> None:
+    _, milled = cut(with_allowances(PLAN, 20.0), mill(16), pattern=pattern)
     inside = PLAN.offset(-0.35).signed_distance(milled.points).reshape(milled.x.shape) > 0.0
     assert milled.height[inside].max() == pytest.approx(-19.7)
 
 
-def test_the_walls_keep_their_allowance() -> None:
-    _, milled = cut(with_allowances(PLAN, 20.0), mill(16))
+@PATTERNS
+def test_the_walls_keep_their_allowance(pattern: str) -> None:
+    _, milled = cut(with_allowances(PLAN, 20.0), mill(16), pattern=pattern)
     kept = PLAN.offset(-0.29).signed_distance(milled.points).reshape(milled.x.shape) < 0.0
     assert (milled.height[kept] == 0.0).all()
 
 
-def test_no_rapid_goes_through_material() -> None:
-    _, milled = cut(with_allowances(PLAN, 20.0), mill(16, 3.0))
+@PATTERNS
+def test_no_rapid_goes_through_material(pattern: str) -> None:
+    _, milled = cut(with_allowances(PLAN, 20.0), mill(16, 3.0), pattern=pattern)
     assert milled.crashes == []
 
 

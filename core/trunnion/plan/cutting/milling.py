@@ -258,4 +258,5 @@ def cutting_data(
         entry_angle=material.entry_angle if kind == ROUGH else 0.0,
         # Finishing enters thin skins: there a ramp takes no time, and would be the largest removal of the operation.
         ramp_share=settings.ramp_share if kind in ROUGHING else 0.0,
+        link_feed=fastest,
     )

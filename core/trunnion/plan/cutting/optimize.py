@@ -12,6 +12,11 @@ from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.tool import TurningTool
 from trunnion.plan.cutting.axial import TABLE_FORMS, TABLE_KINDS, table_data
+from trunnion.plan.cutting.engaged import (
+    engaged_data,
+    engaged_depth,
+    engaged_width,
+)
 from trunnion.plan.cutting.milling import (
     ROUGHING,
     CuttingSettings,
@@ -177,6 +182,9 @@ def recomputed(
     if operation.kind in TABLE_KINDS or operation.cutter.form in TABLE_FORMS:
         data = table_data(operation.kind, operation.cutter, material, machine, shop, settings)
         return replace(operation, data=data)
+    if operation.data.is_engaged:
+        data = engaged_data(operation.cutter, material, machine, settings, depth, width)
+        return replace(operation, data=data)
     data = cutting_data(
         operation.cutter,
         material,
@@ -196,6 +204,8 @@ def _bears(
     """Return the depth (mm) that an operation bears under some limits; one that its route made deeper than the tables' depth of cut has
     layers."""
     tool = operation.cutter
+    if operation.data.is_engaged:
+        return engaged_depth(tool, material, settings)
     if depth > roughing_depth(tool, material, choose(CuttingSettings, {})) * (
         1.0 + tolerance.PARAMETRIC
     ):
@@ -208,6 +218,8 @@ def _bears_width(
 ) -> float:
     """Return the width (mm) that an operation bears under some limits, as `_bears` its depth."""
     tool = operation.cutter
+    if operation.data.is_engaged:
+        return engaged_width(tool, material, settings)
     if width > roughing_width(tool, material, choose(CuttingSettings, {})) * (
         1.0 + tolerance.PARAMETRIC
     ):

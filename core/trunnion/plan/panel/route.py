@@ -16,7 +16,9 @@ from trunnion.model.setup import Setup
 from trunnion.model.tabs import POSITIONS
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
+from trunnion.plan.cutting.engaged import RoughingChoice, even_depth, roughing_choice
 from trunnion.plan.cutting.milling import (
+    ROUGH,
     CuttingSettings,
     cutting_data,
     layer_depth,
@@ -75,6 +77,9 @@ __all__ = ["RouteSettings", "make_route"]
 FACE_WIDTH, WALL_STEP = 0.7, 1.5
 """Width of a face mill's path and axial step of a wall, both over the diameter."""
 
+
+ROUGHED, PATTERN = "plane.rough", "plane.rough.pattern"
+"""The strategy that clears pockets in either pattern, and the key of the choice of one."""
 
 LAYERED = ("rough", "profile_rough")
 """Kinds of operations in layers by contour-parallel passes: they slow down in the slots that open a layer, or come from outside."""
@@ -273,6 +278,10 @@ def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]
     if task.half:
         choices[HALVES] = True
     rules = (stage.rule, *_tool_rules(task, tool, settings))
+    roughing = _roughing(state, task, tool, cutting)
+    if roughing is not None:
+        choices[PATTERN] = roughing.pattern
+        rules = (*rules, roughing.rule)
     return Operation(
         id=task.id,
         kind=stage.kind,
@@ -281,12 +290,23 @@ def _operation(state: PanelPlanState, task: OperationTask, after: frozenset[str]
         setup=state.space.setup.name,
         tool=tool,
         group=stage.name,
-        data=_data(state, task, tool, cutting),
+        data=_data(state, task, tool, cutting) if roughing is None else roughing.data,
         faces=task.faces if stage.finish else (),
         choices=choices,
         rules=rules,
         after=tuple(sorted(after)),
         others=task.others,
+    )
+
+
+def _roughing(
+    state: PanelPlanState, task: OperationTask, tool: Tool, cutting: CuttingSettings
+) -> RoughingChoice | None:
+    """Return how a pocket is roughed; None where the operation is another, or says itself how deep and wide it cuts."""
+    if task.stage.kind != ROUGH or task.stage.strategy != ROUGHED or task.engagement is not None:
+        return None
+    return roughing_choice(
+        tool, state.material, state.machine, cutting, task.height, state.settings.roughing
     )
 
 
@@ -317,11 +337,11 @@ def _engagement(
         return task.engagement(tool)
     kind, allowance = task.stage.kind, state.settings.wall_allowance
     bears = layer_depth if kind in LAYERED else roughing_depth
-    rough_depth = _even(task.height, bears(tool, state.material, cutting))
+    rough_depth = even_depth(task.height, bears(tool, state.material, cutting))
     takes = layer_width if kind in LAYERED else roughing_width
     rough_width = takes(tool, state.material, cutting)
     if kind == "face":
-        return _even(task.height, min(tool.flute_length / 2, rough_depth)), min(
+        return even_depth(task.height, min(tool.flute_length / 2, rough_depth)), min(
             FACE_WIDTH * tool.diameter, task.width
         )
     if kind == "floor":
@@ -329,7 +349,7 @@ def _engagement(
             tool.diameter - 2 * tool.corner_radius
         )
     if kind in ("wall", "corner_finish", "profile_finish"):
-        return _even(
+        return even_depth(
             task.height, min(tool.flank_step(task.height), WALL_STEP * tool.diameter)
         ), max(allowance, tolerance.SEW)
     if kind == "foot":
@@ -351,15 +371,6 @@ def _widest(task: OperationTask, settings: RouteSettings) -> float:
         if task.stage.kind == "rib_top" and math.isfinite(task.width)
         else 0.0
     )
-
-
-def _even(height: float, most: float) -> float:
-    """Return the depth of equal layers of at most `most`.
-
-    >>> _even(36.0, 15.0)
-    12.0
-    """
-    return height / max(math.ceil(height / most - tolerance.COINCIDENT), 1)
 
 
 def _tool_rules(task: OperationTask, tool: Tool, settings: RouteSettings) -> tuple[str, ...]:

@@ -188,8 +188,12 @@ class PathBuilder:
         mark: Mark = Mark.CUT,
         *,
         start_z: float | None = None,
+        at_rim: bool = True,
     ) -> None:
-        """Feed along a plane curve from where the tool is (its start), at height `z`, or evenly down to it from `start_z`."""
+        """Feed along a plane curve from where the tool is (its start), at height `z`, or evenly down to it from `start_z`.
+
+        The feed is that of the cutter's rim on the contour; of its centre where not `at_rim`.
+        """
         seg = curve.segments()
         done = np.cumsum(seg.length)
         first = z if start_z is None else start_z
@@ -204,7 +208,9 @@ class PathBuilder:
                     goal,
                     seg.centre[k],
                     sweep,
-                    arc_feed(feed, float(seg.radius[k]), self.tool.radius, sweep),
+                    arc_feed(feed, float(seg.radius[k]), self.tool.radius, sweep)
+                    if at_rim
+                    else feed,
                     mark,
                 )
 

@@ -76,9 +76,10 @@ def _eased(
     length = pieces.lengths()
     # A piece's own front is partly opened by the one before: over a diameter's length that evens out.
     section = _evened(pieces, length, stock.working().lower(pieces, tool, progress), tool.diameter)
-    share = np.clip(
-        np.divide(most, section, out=np.ones(len(pieces)), where=section > most), LEAST, 1.0
-    )
+    # A link may go faster than the feed, and meet as much less.
+    highest = np.maximum(pieces.feed / full_feed, 1.0)
+    share = np.divide(most, section, out=highest.copy(), where=section * highest > most)
+    share = np.maximum(share, LEAST)
     share = np.floor(share * STEPS + tolerance.COINCIDENT) / STEPS
     cuts = (pieces.motion != Motion.RAPID) & (pieces.mark != Mark.ENTRY)
     feed = np.where(cuts, np.minimum(pieces.feed, full_feed * share), pieces.feed)

@@ -11,13 +11,17 @@ from typing import Any
 from trunnion import tolerance
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.tool import Tool
+from trunnion.plan.cutting.engaged import ENGAGED
 from trunnion.toolpath.motion.easing import LEAST, slot_of_finish
 
+CRESCENTS = "crescents meet material"
 FULL_WIDTH = "the cutter enters at full width"
 INNER_CORNER = "walls meet in a corner"
 LEFTOVERS = "it meets what roughing left"
 EASING_SLACK = 1.25
 """What easing still lets through: it goes by pieces of half a radius and a field of heights, and takes the mean of a diameter's way."""
+ENGAGED_SLACK = 1.1
+"""What it lets through at constant engagement, where the width of cut stays what it is."""
 LAYERS = 2.0
 """Layers of roughing that leftovers in a corner are high where a cutter meets them at once."""
 BOTH_WALLS = 2.0
@@ -30,11 +34,23 @@ def full_width(
     """Return a slot of the operation's depth at the settings' `slot_feed`: how contour-parallel passes open an area."""
     return Engagement(
         width=tool.diameter,
-        depth=data.depth,
-        share=settings.slot_feed * data.slot_share,
+        depth=data.deepest_slot,
+        share=settings.slot_feed * data.slot_share * data.layer_share,
         at=FULL_WIDTH,
         slows=True,
     )
+
+
+def roughing(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:
+    """Return what `full_width` does; at constant engagement the width of cut with what easing lets through, if that is more: only entries
+    and necks meet a slot there."""
+    slot = full_width(tool, data, settings, before)
+    if settings.pattern not in ENGAGED:
+        return slot
+    width = min(ENGAGED_SLACK * data.width, tool.diameter)
+    if slot.width * slot.depth * slot.share >= width * data.depth:
+        return slot
+    return Engagement(width=width, depth=data.depth, share=1.0, at=CRESCENTS)
 
 
 def top_width(tool: Tool, data: CuttingData, settings: Any, before: Operation | None) -> Engagement:

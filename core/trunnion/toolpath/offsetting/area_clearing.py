@@ -53,12 +53,13 @@ NEXT_PASS = 2.5
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClearingParameters:
     """How an area is cleared: `step` mm between passes, `ramp` radians of entry, `slot` share of the feed in a full-width cut,
-    `lead` radius in mm of tangential leads of open passes (0: none)."""
+    `lead` radius in mm of tangential leads of open passes (0: none), `share` of the feed of all passes."""
 
     step: float
     ramp: float
     slot: float
     lead: float = 0.0
+    share: float = 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -105,7 +106,8 @@ def cut_rims(
 ) -> None:
     """Cut the outermost passes of a layer alone; what is inside of them is gone already."""
     for ring in nearest_first(layer.rings, lambda: builder.here, _ring_away):
-        _cut_passes(builder, layer, ring, parameters, None, builder.data.feed, progress)
+        feed = builder.data.feed * parameters.share
+        _cut_passes(builder, layer, ring, parameters, None, feed, progress)
     if len(builder):
         _step_off(builder, layer)
 
@@ -121,7 +123,7 @@ def _cut_ring(
     # Depth first: what lies further inside is cut before the ring round it, so each ring begins beside cut material.
     for inner in nearest_first(ring.inner, lambda: builder.here, _ring_away):
         _cut_ring(builder, layer, inner, parameters, trimming, progress)
-    feed = builder.data.feed * (1.0 if ring.inner else parameters.slot)
+    feed = builder.data.feed * parameters.share * (1.0 if ring.inner else parameters.slot)
     _cut_passes(builder, layer, ring, parameters, trimming, feed, progress)
 
 

@@ -1,8 +1,9 @@
-"""Roughs a pocket by layers: contour-parallel passes from the inside out, entered by helix, ramp or from outside."""
+"""Roughs a pocket by layers, at constant engagement or by contour-parallel passes, entered by helix, ramp or from outside."""
 
 from __future__ import annotations
 
 import math
+from functools import partial
 
 from trunnion import tolerance
 from trunnion.findings import Finding, face_tags, info, warning
@@ -10,14 +11,16 @@ from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
 from trunnion.model.tool import Tool
+from trunnion.plan.cutting.engaged import BY_TIME, CONSTANT_ENGAGEMENT, CONTOUR_PARALLEL, ENGAGED
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
+from trunnion.toolpath.constant_engagement.clearing import EngagedClearing
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.easing import eased
-from trunnion.toolpath.motion.engagement import full_width
+from trunnion.toolpath.motion.engagement import ENGAGED_SLACK, roughing
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import (
     ClearingLayer,
@@ -53,6 +56,13 @@ ENTRY = 3.0
 class RoughSettings:
     """How a pocket is roughed. Width and depth of cut come with the cutting data, allowances with the drive."""
 
+    pattern: str = setting(
+        CONTOUR_PARALLEL,
+        choices=(BY_TIME, CONSTANT_ENGAGEMENT, CONTOUR_PARALLEL),
+        label="Pattern",
+        help="constant-engagement: spirals and crescents that keep the angle of contact. contour-parallel: offsets of the walls, the first "
+        "one in full width. by-time: each place in the quicker one.",
+    )
     ramp_angle: float = setting(
         0.0,
         unit="deg",
@@ -67,7 +77,7 @@ class RoughSettings:
     safety: float = safety()
 
 
-@strategy(settings=RoughSettings, drive=PlaneDrive, meets=full_width)
+@strategy(settings=RoughSettings, drive=PlaneDrive, meets=roughing)
 def rough(
     drive: PlaneDrive,
     tool: Tool,
@@ -80,9 +90,16 @@ def rough(
     """Return the motions that clear every band of the drive layer by layer down to the floors' allowance, and what the cutter leaves."""
     builder = PathBuilder(tool, data, stock, setup, settings.safety)
     parameters = ClearingParameters(
-        step=safe_step(tool, data.width, RIDGE),
+        step=safe_step(tool, data.layer_width or data.width, RIDGE),
         ramp=math.radians(settings.ramp_angle or data.entry_angle or ENTRY),
         slot=settings.slot_feed * data.slot_share,
+        share=data.layer_share,
+    )
+    engaged = settings.pattern in ENGAGED
+    clear = (
+        EngagedClearing(data, parameters, by_time=settings.pattern == BY_TIME).clear
+        if engaged
+        else partial(clear_area, parameters=parameters)
     )
     findings: list[Finding] = []
     remaining: list[tuple[DriveLevel, float]] = []
@@ -92,7 +109,11 @@ def rough(
             # It doesn't go on below the level before: what stands over it is asked of the stock.
             above, first = level.top, True
         heights = layers(
-            above, level.bottom, data.depth, _horizontals(drive, n), drive.floor_allowance
+            above,
+            level.bottom,
+            data.depth if engaged else data.deepest_slot,
+            _horizontals(drive, n),
+            drive.floor_allowance,
         )
         made: dict[float, ClearingPasses] = {}
         for z in heights:
@@ -104,7 +125,7 @@ def rough(
             passes = _passes(made, drive, level, tool, distance, parameters.step)
             if passes.rings and not _is_cleared(builder, level.wanted, z):
                 known = None if first or passes.clip is not None else above
-                clear_area(
+                clear(
                     builder,
                     ClearingLayer(
                         z=z,
@@ -115,8 +136,7 @@ def rough(
                         wanted=level.wanted,
                         worth=min(RIDGE, WORTH * (above - z)),
                     ),
-                    parameters,
-                    progress,
+                    progress=progress,
                 )
                 rim = _over_feet(drive, tool, z)
                 if above - rim > TALL * tool.radius:
@@ -144,8 +164,11 @@ def rough(
     findings += _corners(
         drive, tool, [(level, area) for level, area in remaining if area >= SMALLEST_LEFTOVER]
     )
+    slot = parameters.slot * data.deepest_slot / data.depth
+    if engaged:
+        slot = ENGAGED_SLACK * data.width / tool.diameter
     return Planned(
-        path=eased(builder.finished(), tool, data, stock, parameters.slot, progress),
+        path=eased(builder.finished(), tool, data, stock, slot, progress),
         findings=tuple(findings),
     )
 
