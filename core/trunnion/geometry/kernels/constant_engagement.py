@@ -126,6 +126,39 @@ def sweep_disc(
 
 
 @njit(cache=True, nogil=True)
+def _stamp_disc(
+    uncut: Floats, x0: float, y0: float, cell: float, x: float, y: float, radius: float
+) -> None:
+    """Clear a disc about (x, y), a short step from one that was cleared: nodes near its rim get their distance from it where that is less.
+
+    Between two steps of a twelfth of the radius the discs' rims are within 0.001 radii of what the cutter sweeps.
+    """
+    nx, ny = uncut.shape
+    outer, inner = radius + BAND * cell, radius - BAND * cell
+    first, last = (
+        max(0, int(math.ceil((x - outer - x0) / cell))),
+        min(nx - 1, int((x + outer - x0) / cell)),
+    )
+    for i in range(first, last + 1):
+        across = (x0 + i * cell - x) ** 2
+        reach = math.sqrt(max(outer * outer - across, 0.0))
+        gap = math.sqrt(inner * inner - across) if across < inner * inner else 0.0
+        low, high = (
+            max(0, int(math.ceil((y - reach - y0) / cell))),
+            min(ny - 1, int((y + reach - y0) / cell)),
+        )
+        # Of the column the two stretches in the band are looked at; inside of it the disc before has been.
+        below = min(high, int(math.floor((y - gap - y0) / cell)))
+        above = max(low, int(math.ceil((y + gap - y0) / cell)), below + 1)
+        for stretch in range(2):
+            first_j, last_j = (low, below) if stretch == 0 else (above, high)
+            for j in range(first_j, last_j + 1):
+                away = math.sqrt(across + (y0 + j * cell - y) ** 2) - radius
+                if away < uncut[i, j]:
+                    uncut[i, j] = away
+
+
+@njit(cache=True, nogil=True)
 def disc_is_free(
     uncut: Floats,
     depth: Floats,
@@ -271,11 +304,10 @@ def march_engaged(
         best = far
         bend = best - heading
         heading = best
-        px, py = x + step * math.cos(heading), y + step * math.sin(heading)
-        if cuts:
-            sweep_disc(uncut, x0, y0, cell, x, y, px, py, radius)
-        x, y = px, py
+        x, y = x + step * math.cos(heading), y + step * math.sin(heading)
         engagement = excess + angle
+        if cuts and engagement > 0.0:
+            _stamp_disc(uncut, x0, y0, cell, x, y, radius)
         path[n, 0], path[n, 1], path[n, 2], path[n, 3] = x, y, heading, engagement
         n += 1
         if engagement > least:

@@ -32,6 +32,9 @@ THIN = 0.006
 MOST_LOOKED_AT = 400
 """Positions among which the deepest is looked for."""
 
+FILM = 0.012
+"""Radii: what a link may scrape off: marches leave no more to each other."""
+
 BLOCK = 8
 """Nodes along the side of a block that is looked at as a whole first."""
 
@@ -126,7 +129,7 @@ class ClearedArea:
                 end[1],
                 self.radius,
                 self.fan,
-                self.thin,
+                FILM * self.radius,
             )
         )
 

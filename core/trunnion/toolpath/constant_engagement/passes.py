@@ -131,7 +131,7 @@ class _Laying:
             first = max(int(met[0]) - round(RUN_IN / STEP), 0)
             last = min(int(met[-1]) + 1 + round(RUN_OUT / STEP), len(path) - 1)
             self._add(path[first : last + 1], centre)
-            self._ends.append(path[last, :3])
+            self._ends = [path[last, :3]]
             start, centre, idle = path[first, :3], None, IDLE_BEFORE
 
     def _march(self, start: Floats, idle: float) -> tuple[Floats, int]:
