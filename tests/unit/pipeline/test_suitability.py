@@ -9,6 +9,7 @@ import round_parts
 import samples
 from blockparts import terrace
 from leaning_pockets import bowl_block
+from long_mark import mostly_long
 from parts import PARTS, needs_parts
 from seeded.leaning_panels import leaning_panel
 from seeded.panels import panel
@@ -91,12 +92,8 @@ def test_faces_that_enclose_no_material_are_only_grouped() -> None:
     assert found.name == "surface" and "the faces enclose no material" in found.suits.reason
 
 
-def some(count: int, *quick: int):
-    return [k if k in quick else pytest.param(k, marks=pytest.mark.long) for k in range(count)]
-
-
 @pytest.mark.parametrize("suffix", ["step", "igs"])
-@pytest.mark.parametrize("seed", some(10, 0, 5))
+@pytest.mark.parametrize("seed", mostly_long(range(10), 0, 5))
 def test_a_random_panel_is_a_panel_by_far(seed: int, suffix: str) -> None:
     made = panel(seed)
     graph = samples.read(made.shape, suffix, made.unit).graph()
@@ -104,7 +101,7 @@ def test_a_random_panel_is_a_panel_by_far(seed: int, suffix: str) -> None:
     assert SurfaceFamily().suits(graph).score < 0.25
 
 
-@pytest.mark.parametrize("seed", some(12, 0, 2, 9))
+@pytest.mark.parametrize("seed", mostly_long(range(12), 0, 2, 9))
 def test_a_random_panel_with_leaning_walls_and_curved_floors_is_a_panel(seed: int) -> None:
     first, second, *_ = ratings(samples.read(leaning_panel(seed).shape).graph())
     assert first.name == "panel" and first.suits.score > second.suits.score
@@ -118,7 +115,7 @@ def test_a_curved_floor_between_walls_is_a_panels_and_a_hollow_in_a_plate_is_not
 
 
 @pytest.mark.parametrize("suffix", ["step", "igs"])
-@pytest.mark.parametrize("seed", some(10, 0, 4))
+@pytest.mark.parametrize("seed", mostly_long(range(10), 0, 4))
 def test_a_random_curved_plate_is_a_part_of_curved_surfaces_by_far(seed: int, suffix: str) -> None:
     made = plate(seed)
     graph = samples.read(made.shape, suffix, made.unit).graph()
