@@ -90,7 +90,7 @@ def moved(part: Part, kind: str) -> tuple[Any, Callable[[list[float]], list[floa
         ("B1", "turned", "inch", "igs"),
         pytest.param("B3", "turned", "mm", "igs", marks=pytest.mark.long),
         pytest.param("B3", "mirrored", "mm", "step", marks=pytest.mark.long),
-        ("B3", "far away", "inch", "step"),
+        pytest.param("B3", "far away", "inch", "step", marks=pytest.mark.long),
     ],
 )
 def test_a_panel_is_found_wherever_it_lies_and_in_inches(
