@@ -104,10 +104,10 @@ OWN = {f.__name__: f for f in (lean, stand, cut, refuse, fail, left, right)}
 
 
 @pytest.fixture(scope="module")
-def routed(sample_panel):
-    """An engine and its session of the small panel, with operations."""
+def routed(sample_part):
+    """An engine and its session of the small part, with operations."""
     engine = Engine()
-    return engine, engine.run(engine.open(sample_panel), until="optimize")
+    return engine, engine.run(engine.open(sample_part), until="optimize")
 
 
 @pytest.fixture
