@@ -179,12 +179,10 @@ def test_a_smaller_cutter_after_a_larger_one_cuts_only_its_rest(dome):
         next(t for t in engine.context.shop.tools if t.form == "ball" and t.diameter == d)
         for d in (3.0, 6.0)
     )
-    finish = replace(planned, tool=large)
+    finish = replace(planned, tool=large, after=())
     again = replace(finish, id="finish-again", tool=small, after=(finish.id,))
-    operations = list(session.process.operations)
-    at = operations.index(planned)
-    operations[at : at + 1] = [finish, again]
-    planted = replace(session, process=replace(session.process, operations=tuple(operations)))
+    process = replace(session.process, operations=(finish, again))
+    planted = replace(session, process=numbered(process, {}))
     fix = Fix(kind="trim", operation="finish-again", reason="verify.air", amount=0.9)
     trimmed = engine.with_fix(planted, fix)
     assert trimmed.process.operation("finish-again").choices["surface.earlier"] == finish.tool.name
