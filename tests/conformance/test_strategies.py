@@ -14,6 +14,7 @@ import pytest
 
 from gap_turning import ring_with_gaps
 from holed import holed_plate
+from long_mark import mostly_long
 from pitted import pitted_block
 from subjects import (
     MILLING,
@@ -21,6 +22,7 @@ from subjects import (
     STRATEGIES,
     check_cancel,
     check_settings,
+    dear_ones_long,
     is_one_line,
     own,
     until,
@@ -41,14 +43,6 @@ from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 
 by_name = pytest.mark.parametrize("name", MILLING)
-DEAR = ("channel.rough", "channel.hub", "impeller")
-"""Strategies and families whose paths take long: checks that make them several times, or prove them, are of the long tests."""
-
-
-def dear_ones_long(names):
-    return [pytest.param(n, marks=pytest.mark.long) if n in DEAR else n for n in names]
-
-
 by_name_often = pytest.mark.parametrize("name", dear_ones_long(MILLING))
 COARSE = {"surface.scallop": 0.3}
 """Scallops in mm for passes that nobody proves."""
@@ -303,7 +297,7 @@ def standing(name: str, tool: Tool, found: OperationPath | None) -> float:
     return float(sweep.residual(setup.frame.to_local(points), far)[0].mean())
 
 
-@pytest.mark.parametrize("times", (LARGER, LITTLE_LARGER))
+@pytest.mark.parametrize("times", mostly_long((LARGER, LITTLE_LARGER), LARGER))
 @by_name_often
 def test_a_smaller_cutter_leaves_no_more(name, times):
     tool = case(name).operation.tool

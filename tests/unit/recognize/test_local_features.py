@@ -151,12 +151,9 @@ GROUPINGS = (("aligned", "features"), ("invariant", "features_by_invariant_size"
 @needs_parts
 @pytest.mark.parametrize(
     "name",
-    [
-        "D1.step",
-        "D2.igs",
-        "D3.step",
-        *(pytest.param(n, marks=pytest.mark.long) for n in ("D1.igs", "D2.step", "D3.igs")),
-    ],
+    mostly_long(
+        [f"D{n}.{suffix}" for n in (1, 2, 3) for suffix in ("step", "igs")], "D1.step", "D2.igs"
+    ),
 )
 def test_local_features_are_those_of_the_truth(name: str) -> None:
     truth = json.loads((PARTS / "surface" / f"{name[:2]}.truth.json").read_text())
