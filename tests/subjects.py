@@ -169,6 +169,7 @@ def check_cancel(work: Callable[[Progress], Any]) -> None:
 
 
 __all__ = [
+    "DEAR",
     "FAMILIES",
     "PLANNERS",
     "STRATEGIES",

@@ -17,6 +17,7 @@ from holed import holed_plate
 from long_mark import mostly_long
 from pitted import pitted_block
 from subjects import (
+    DEAR,
     MILLING,
     PLANNERS,
     STRATEGIES,
@@ -298,7 +299,9 @@ def standing(name: str, tool: Tool, found: OperationPath | None) -> float:
 
 
 @pytest.mark.parametrize("times", mostly_long((LARGER, LITTLE_LARGER), LARGER))
-@by_name_often
+@pytest.mark.parametrize(
+    "name", mostly_long(MILLING, *(n for n in MILLING if not n.startswith("channel.")))
+)
 def test_a_smaller_cutter_leaves_no_more(name, times):
     tool = case(name).operation.tool
     larger = scaled(tool, times)
@@ -319,7 +322,9 @@ def test_it_brings_its_faces_nearer_to_what_is_wanted(name):
         assert standing(name, tool, made(name)) < standing(name, tool, None) - UNEVEN
 
 
-@pytest.mark.parametrize("family", dear_ones_long(PLANNERS))
+@pytest.mark.parametrize(
+    "family", mostly_long(PLANNERS, *(n for n in PLANNERS if n not in (*DEAR, "casing")))
+)
 def test_no_path_meets_more_than_its_strategy_declares(family):
     session = until(family, "verify")
     proofs = {p.operation: p for p in session.verdict.operations}

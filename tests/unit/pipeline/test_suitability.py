@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -40,7 +42,7 @@ def best(graph: FaceGraph) -> Rated:
     return ratings(graph)[0]
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", mostly_long(range(3), 0))
 def test_a_wheel_with_twisted_blades_is_an_impeller(seed: int) -> None:
     graph, made = graph_of(seed)
     found = best(graph)
@@ -67,7 +69,7 @@ def test_straight_blades_on_a_disc_are_walls_of_a_panel(seed: int) -> None:
     assert best(graph_of(seed, twist=0.0)[0]).name == "panel"
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", mostly_long(range(2), 0))
 def test_blades_that_stand_out_from_a_small_hub_are_no_impeller(seed: int) -> None:
     graph, _ = graph_of(seed, hub=0.3)
     assert ImpellerFamily().suits(graph).score == 0.0
@@ -123,14 +125,20 @@ def test_a_random_curved_plate_is_a_part_of_curved_surfaces_by_far(seed: int, su
     assert PanelFamily().suits(graph).score < 0.8
 
 
+@cache
+def still_and_moved(make) -> tuple[FaceGraph, FaceGraph]:
+    """Return the graph of a part, and the same seen from far away and askew."""
+    still, _ = graph_of(0, make)
+    pick = np.random.default_rng(11)
+    return still, still.in_frame(
+        Frame(pick.uniform(-1000.0, 1000.0, 3), pick.normal(size=3), pick.normal(size=3))
+    )
+
+
 @pytest.mark.parametrize("kind", [ImpellerFamily(), CasingFamily(), PanelFamily(), SurfaceFamily()])
 @pytest.mark.parametrize("make", [round_parts.wheel, round_parts.shell])
 def test_a_kind_does_not_depend_on_place_and_size(kind, make) -> None:
-    still, _ = graph_of(0, make)
-    pick = np.random.default_rng(11)
-    moved = still.in_frame(
-        Frame(pick.uniform(-1000.0, 1000.0, 3), pick.normal(size=3), pick.normal(size=3))
-    )
+    still, moved = still_and_moved(make)
     assert kind.suits(moved).score == pytest.approx(kind.suits(still).score, abs=1e-3)
 
 
