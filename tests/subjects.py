@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 import samples
+from long_mark import mostly_long
 from own_packages import names, with_own_packages
 from seeded.casings import short_ring
 from seeded.impellers import small_impeller
@@ -35,6 +36,8 @@ with with_own_packages():
     TURNING = [n for n in STRATEGIES if registry.get("strategies", n).drive is RevolvedDrive]
 MILLING = [n for n in STRATEGIES if n not in TURNING]
 """Strategies that turn the work, and those whose tools rotate."""
+DEAR = ("channel.rough", "channel.hub", "impeller")
+"""Strategies and families whose paths take long: checks that make them several times, or prove them, are of the long tests."""
 MOST_CALLS = 100_000
 """Calls of the interpreter between two looks at cancel: less than 0.1 s (measured: 250 000 take 0.15 s)."""
 
@@ -101,6 +104,11 @@ def until(family: str, step: str) -> Session:
     return engine.run(session, until=step)
 
 
+def dear_ones_long(names: list[str]) -> list[Any]:
+    """Return strategies or families for `parametrize`, those whose paths take long marked long."""
+    return mostly_long(names, *(n for n in names if n not in DEAR))
+
+
 def is_one_line(words: str) -> bool:
     """Return whether words are one line for a person."""
     return bool(words.strip()) and "\n" not in words and "Error" not in words
@@ -161,11 +169,13 @@ def check_cancel(work: Callable[[Progress], Any]) -> None:
 
 
 __all__ = [
+    "DEAR",
     "FAMILIES",
     "PLANNERS",
     "STRATEGIES",
     "check_cancel",
     "check_settings",
+    "dear_ones_long",
     "engines",
     "foreign",
     "is_one_line",

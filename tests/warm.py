@@ -9,12 +9,26 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from importlib.metadata import entry_points
 from multiprocessing.context import ForkServerContext, ForkServerProcess
 from pathlib import Path
 from types import SimpleNamespace
 from typing import IO, Any
 
-MODULES = ("trunnion.part.read.transfer", "trunnion.pipeline.engine", "trunnion_gui.worker.worker")
+GROUPS = ("families", "planners", "strategies", "fixes", "dialects")
+"""Groups of registered things that a computing process looks up."""
+MODULES = (
+    "trunnion.part.read.transfer",
+    "trunnion.pipeline.engine",
+    "trunnion_gui.worker.worker",
+    *sorted({e.module for group in GROUPS for e in entry_points(group=f"trunnion.{group}")}),
+    "trunnion.part.topology.graph",
+    "trunnion.part.topology.part_box",
+    "trunnion.part.shape.section",
+    "trunnion.part.shape.tessellate",
+    "trunnion.post.readers.iso",
+    "trunnion.verify.judge.verdict",
+)
 """What the warm process imports: all that reading a part and computing for a window need."""
 CAN_FORK = hasattr(os, "fork")
 

@@ -6,7 +6,15 @@ from dataclasses import replace
 
 import pytest
 
-from subjects import PLANNERS, check_cancel, check_settings, is_one_line, own, until
+from subjects import (
+    PLANNERS,
+    check_cancel,
+    check_settings,
+    dear_ones_long,
+    is_one_line,
+    own,
+    until,
+)
 from trunnion import registry
 from trunnion.findings import Refused
 from trunnion.model.blank import Box
@@ -93,7 +101,7 @@ def test_its_typical_plans_name_what_there_is(name):
         assert all(is_one_line(s.rule) for s in stages)
 
 
-@by_name
+@pytest.mark.parametrize("name", dear_ones_long(PLANNERS))
 def test_the_same_part_gives_the_same_bytes(name):
     session = routed(name)[1]
     first, second = (process_xml(route_again(name), session.part) for _ in (0, 1))
@@ -226,7 +234,7 @@ def test_it_stops_soon_after_it_was_asked_to(name):
     check_cancel(lambda progress: route_again(name, progress))
 
 
-@by_name
+@pytest.mark.parametrize("name", dear_ones_long(PLANNERS))
 def test_a_plan_that_its_part_has_taught_gives_the_same_operations_again(name, tmp_path):
     engine, session = own(name)[0], until(name, "route")
     library = PlanLibrary(tmp_path / "plan-library.sqlite")

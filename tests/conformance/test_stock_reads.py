@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from subjects import PLANNERS, own, until
+from subjects import PLANNERS, dear_ones_long, own, until
 from trunnion.pipeline import Engine
 from trunnion.pipeline.operation_path import PathJob
 from trunnion.pipeline.toolpaths import make_paths
@@ -73,7 +73,7 @@ def test_paths_of_a_panel_do_not_depend_on_stock_that_they_did_not_look_at(panel
     assert np.median(list(checked.values())) < 0.2
 
 
-@pytest.mark.parametrize("name", PLANNERS)
+@pytest.mark.parametrize("name", dear_ones_long(PLANNERS))
 def test_paths_of_no_family_depend_on_stock_that_they_did_not_look_at(name, checked):
     engine, session = own(name)[0], until(name, "optimize")
     make_paths(replace(session, paths=()), engine.context, NO_PROGRESS)

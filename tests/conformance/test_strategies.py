@@ -14,13 +14,16 @@ import pytest
 
 from gap_turning import ring_with_gaps
 from holed import holed_plate
+from long_mark import mostly_long
 from pitted import pitted_block
 from subjects import (
+    DEAR,
     MILLING,
     PLANNERS,
     STRATEGIES,
     check_cancel,
     check_settings,
+    dear_ones_long,
     is_one_line,
     own,
     until,
@@ -41,14 +44,6 @@ from trunnion.verify.finish.sweep import Sweep
 from trunnion.verify.motion import moves_of
 
 by_name = pytest.mark.parametrize("name", MILLING)
-DEAR = ("channel.rough", "channel.hub", "impeller")
-"""Strategies and families whose paths take long: checks that make them several times, or prove them, are of the long tests."""
-
-
-def dear_ones_long(names):
-    return [pytest.param(n, marks=pytest.mark.long) if n in DEAR else n for n in names]
-
-
 by_name_often = pytest.mark.parametrize("name", dear_ones_long(MILLING))
 COARSE = {"surface.scallop": 0.3}
 """Scallops in mm for passes that nobody proves."""
@@ -303,8 +298,10 @@ def standing(name: str, tool: Tool, found: OperationPath | None) -> float:
     return float(sweep.residual(setup.frame.to_local(points), far)[0].mean())
 
 
-@pytest.mark.parametrize("times", (LARGER, LITTLE_LARGER))
-@by_name_often
+@pytest.mark.parametrize("times", mostly_long((LARGER, LITTLE_LARGER), LARGER))
+@pytest.mark.parametrize(
+    "name", mostly_long(MILLING, *(n for n in MILLING if not n.startswith("channel.")))
+)
 def test_a_smaller_cutter_leaves_no_more(name, times):
     tool = case(name).operation.tool
     larger = scaled(tool, times)
@@ -325,7 +322,9 @@ def test_it_brings_its_faces_nearer_to_what_is_wanted(name):
         assert standing(name, tool, made(name)) < standing(name, tool, None) - UNEVEN
 
 
-@pytest.mark.parametrize("family", dear_ones_long(PLANNERS))
+@pytest.mark.parametrize(
+    "family", mostly_long(PLANNERS, *(n for n in PLANNERS if n not in (*DEAR, "casing")))
+)
 def test_no_path_meets_more_than_its_strategy_declares(family):
     session = until(family, "verify")
     proofs = {p.operation: p for p in session.verdict.operations}

@@ -49,7 +49,6 @@ def shown_rows(block):
     ]
 
 
-@pytest.mark.cold
 @pytest.mark.timeout(240)
 def test_a_person_adds_a_plan_sees_why_it_matches_removes_it_and_takes_both_back(
     routed, library, qtbot, idle
@@ -91,7 +90,6 @@ def test_a_person_adds_a_plan_sees_why_it_matches_removes_it_and_takes_both_back
     assert document.history.undo_label == "Add block A to the library"
 
 
-@pytest.mark.cold
 @pytest.mark.timeout(240)
 def test_a_route_that_follows_the_plan_says_so(routed, library, idle):
     document, block = routed.document, routed.panels["route"].library
@@ -111,7 +109,6 @@ def test_a_route_that_follows_the_plan_says_so(routed, library, idle):
     assert process.plan in routed.panels["route"].result.text()
 
 
-@pytest.mark.cold
 @pytest.mark.timeout(240)
 def test_a_name_that_is_in_use_is_refused_in_a_message_and_nothing_is_lost(routed, library, idle):
     document, block = routed.document, routed.panels["route"].library

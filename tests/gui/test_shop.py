@@ -18,7 +18,7 @@ from trunnion_gui.shop.tool_table import NAME, NUMBER, TICK
 LEFT = Qt.MouseButton.LeftButton
 LIBRARIES = Path(__file__).parents[1] / "tool_libraries"
 MACHINE, DRILL = "Mill 1200", "DR-S D8"
-pytestmark = [pytest.mark.cold, pytest.mark.timeout(240)]
+pytestmark = pytest.mark.timeout(240)
 
 
 @pytest.fixture

@@ -11,8 +11,6 @@ from trunnion_gui.worker.shared_memory import packed, unpacked
 from trunnion_gui.worker.steps import TITLES
 from trunnion_gui.worker.worker import GRACE_S, WRITING_GRACE_S, Worker
 
-pytestmark = pytest.mark.cold
-
 
 def opened(make_window, factory, part_file, idle):
     window = make_window(f"fake_engine:{factory}")
@@ -83,6 +81,7 @@ def test_what_is_done_so_far_is_shown_while_the_rest_runs(make_window, part_file
     assert window.document.session is window.document.shown
 
 
+@pytest.mark.cold
 def test_a_job_that_does_not_listen_is_ended_with_its_process(make_window, part_file, idle, qtbot):
     window = opened(make_window, "DeafEngine", part_file, idle)
     pid = window.document.jobs.worker.pid
@@ -116,6 +115,7 @@ def test_a_crash_costs_the_job_and_not_the_session(make_window, part_file, idle,
     assert window.document.states["optimize"] == "done"
 
 
+@pytest.mark.cold
 def test_a_killed_worker_starts_again_and_has_the_part(make_window, part_file, idle, qtbot):
     window = opened(make_window, "FakeEngine", part_file, idle)
     pid = window.document.jobs.worker.pid

@@ -51,12 +51,14 @@ def sampled_depth(strip, move, part, rounds=9, grid=41, kept=6):
         depth = _depths(strip, move, part, *places.T)
         best = max(best, (float(depth.max()), places[np.argmax(depth)]), key=lambda found: found[0])
         size *= 0.3
-        boxes = []
+        boxes, middles = [], []
         for k in np.argsort(-depth)[:200]:
-            if all((np.abs(places[k] - box.mean(axis=1)) > size / 2).any() for box in boxes):
+            place = places[k].tolist()
+            if all(any(abs(x - m) > size / 2 for x, m in zip(place, middle)) for middle in middles):
                 boxes.append(
                     np.clip(np.column_stack([places[k] - size / 2, places[k] + size / 2]), 0.0, 1.0)
                 )
+                middles.append(boxes[-1].mean(axis=1).tolist())
             if len(boxes) == kept:
                 break
     return _climbed(strip, move, part, *best)

@@ -76,12 +76,14 @@ def sampled_depth(part, move, corners, rounds=9, grid=(11, 7, 7), kept=5):
             (1 - root) * corners[0] + root * (1 - v) * corners[1] + root * v * corners[2],
         )
         best = max(best, float(depth.max()))
-        size, boxes = size * 0.4, []
+        size, boxes, middles = size * 0.4, [], []
         for k in np.argsort(-depth)[:200]:
-            if all((np.abs(places[k] - box.mean(axis=1)) > size / 2).any() for box in boxes):
+            place = places[k].tolist()
+            if all(any(abs(x - m) > size / 2 for x, m in zip(place, middle)) for middle in middles):
                 boxes.append(
                     np.clip(np.column_stack([places[k] - size / 2, places[k] + size / 2]), 0.0, 1.0)
                 )
+                middles.append(boxes[-1].mean(axis=1).tolist())
             if len(boxes) == kept:
                 break
     return best

@@ -96,7 +96,7 @@ words = st.one_of(
 )
 
 
-@settings(deadline=None, max_examples=500)
+@settings(deadline=None, max_examples=250)
 @given(text=st.lists(words, max_size=8), between=st.sampled_from([" ", "", "\t", "\xa0 "]))
 def test_a_line_of_simple_words_is_read_as_any_other(text, between):
     line = between.join(text)
@@ -145,14 +145,14 @@ def bodies(draw, letters):
 
 
 @pytest.mark.parametrize("name", WORD_ADDRESS)
-@settings(deadline=None, max_examples=200)
+@settings(deadline=None, max_examples=100)
 @given(body=bodies(["X", "Y", "Z"]), begins=st.sampled_from(["G1 X1. F100.\n", "G0 X1.\n", ""]))
 def test_positions_of_three_axes_are_read_as_line_by_line(name, body, begins):
     same_motions(name, f"{STARTS[name]}{begins}{body}\nM30\n", {})
 
 
 @pytest.mark.parametrize("name", ["fanuc", "sinumerik"])
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=150)
 @given(data=st.data(), begins=st.sampled_from(["G1 X1. F100.\n", "G0 X1.\n"]))
 def test_positions_and_directions_are_read_as_line_by_line(name, data, begins):
     body = data.draw(bodies(["X", "Y", "Z", *VECTORS[name]]))

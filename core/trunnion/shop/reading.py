@@ -6,6 +6,7 @@ import math
 import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
@@ -184,10 +185,17 @@ def by_name(found: Iterable[tuple[int, CatalogueEntry]]) -> dict[str, CatalogueE
 
 def _parsed(path: Traversable, label: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return _tables(path.read_bytes().decode("utf-8-sig"))
     except UnicodeDecodeError:
         raise BadInput(f"{label}: not a text in UTF-8") from None
     except tomllib.TOMLDecodeError as reason:
         raise BadInput(f"{label}: {reason}") from None
     except OSError as reason:
         raise BadInput(f"{label}: {reason.strerror}") from None
+
+
+@lru_cache(maxsize=64)
+def _tables(text: str) -> dict[str, Any]:
+    """Return what a text of TOML says, which nobody changes: a shop is loaded again when a tool is put into a machine, its other files the
+    same."""
+    return tomllib.loads(text)

@@ -26,9 +26,9 @@ def rod() -> Part:
 @pytest.fixture(scope="module")
 def vase() -> Part:
     """Return a body whose side is a spline's."""
-    side = [(20.0, 0.0), (31.0, 12.0), (15.0, 30.0), (22.0, 45.0)]
+    side = [(4.0, 0.0), (6.2, 2.4), (3.0, 6.0), (4.4, 9.0)]
     outline = cq.Workplane("XZ").lineTo(*side[0]).spline(side[1:], includeCurrent=True)
-    return samples.read(outline.lineTo(0.0, 45.0).close().revolve().val().wrapped)
+    return samples.read(outline.lineTo(0.0, 9.0).close().revolve().val().wrapped)
 
 
 def frame_along(z: tuple[float, ...], origin: tuple[float, ...] = (0.0, 0.0, 0.0)) -> Frame:

@@ -151,17 +151,31 @@ def test_more_load_than_the_data_are_for_is_fed_more_slowly_when_remarks_are_rep
     assert loads and len(after) < len(loads)
 
 
-def test_faces_that_an_upright_tool_does_harm_at_are_finished_by_a_leaning_one(dome):
+def approached(dome):
+    """Return the session with a fix of the finishing of the dome, and the fix: the tool comes from another direction."""
     engine, session = dome
     finish = next(
         o for o in session.process.operations if o.kind == "finish" and o.cutter.form == "ball"
     )
     fix = Fix(kind="approach", operation=finish.id, reason="verify.collision", amount=0.4)
-    fixed = engine.run(engine.with_fix(session, fix))
-    leaning = next(p for p in fixed.paths if p.operation == finish.id)
+    return engine.with_fix(session, fix), finish, fix
+
+
+@pytest.mark.long
+def test_a_leaning_tool_that_finishes_faces_does_no_harm(dome):
+    verdict = dome[0].run(approached(dome)[0]).verdict
+    assert verdict.collisions == 0 and verdict.rapids_in_stock == 0
+
+
+def test_faces_that_an_upright_tool_does_harm_at_are_finished_by_a_leaning_one(dome):
+    engine, session = dome
+    changed, finish, fix = approached(dome)
+    alone = replace(changed.process.operation(finish.id), after=())
+    process = numbered(replace(changed.process, operations=(alone,)), {})
+    fixed = engine.run(replace(changed, process=process), "toolpath")
+    (leaning,) = fixed.paths
     assert (leaning.path.axis[:, 2] < 0.999).any()
-    assert fixed.verdict.collisions == 0 and fixed.verdict.rapids_in_stock == 0
-    wary = engine.with_fix(fixed, fix)
+    wary = engine.with_fix(changed, fix)
     assert wary.process.operation(finish.id).choices["surface.point.wary"] is True
     with pytest.raises(BadInput, match="follow the remedy by hand"):
         engine.with_fix(wary, fix)
@@ -179,12 +193,10 @@ def test_a_smaller_cutter_after_a_larger_one_cuts_only_its_rest(dome):
         next(t for t in engine.context.shop.tools if t.form == "ball" and t.diameter == d)
         for d in (3.0, 6.0)
     )
-    finish = replace(planned, tool=large)
+    finish = replace(planned, tool=large, after=())
     again = replace(finish, id="finish-again", tool=small, after=(finish.id,))
-    operations = list(session.process.operations)
-    at = operations.index(planned)
-    operations[at : at + 1] = [finish, again]
-    planted = replace(session, process=replace(session.process, operations=tuple(operations)))
+    process = replace(session.process, operations=(finish, again))
+    planted = replace(session, process=numbered(process, {}))
     fix = Fix(kind="trim", operation="finish-again", reason="verify.air", amount=0.9)
     trimmed = engine.with_fix(planted, fix)
     assert trimmed.process.operation("finish-again").choices["surface.earlier"] == finish.tool.name

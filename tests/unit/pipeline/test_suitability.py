@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ import round_parts
 import samples
 from blockparts import terrace
 from leaning_pockets import bowl_block
+from long_mark import mostly_long
 from parts import PARTS, needs_parts
 from seeded.leaning_panels import leaning_panel
 from seeded.panels import panel
@@ -39,7 +42,7 @@ def best(graph: FaceGraph) -> Rated:
     return ratings(graph)[0]
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", mostly_long(range(3), 0))
 def test_a_wheel_with_twisted_blades_is_an_impeller(seed: int) -> None:
     graph, made = graph_of(seed)
     found = best(graph)
@@ -66,7 +69,7 @@ def test_straight_blades_on_a_disc_are_walls_of_a_panel(seed: int) -> None:
     assert best(graph_of(seed, twist=0.0)[0]).name == "panel"
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", mostly_long(range(2), 0))
 def test_blades_that_stand_out_from_a_small_hub_are_no_impeller(seed: int) -> None:
     graph, _ = graph_of(seed, hub=0.3)
     assert ImpellerFamily().suits(graph).score == 0.0
@@ -91,12 +94,8 @@ def test_faces_that_enclose_no_material_are_only_grouped() -> None:
     assert found.name == "surface" and "the faces enclose no material" in found.suits.reason
 
 
-def some(count: int, *quick: int):
-    return [k if k in quick else pytest.param(k, marks=pytest.mark.long) for k in range(count)]
-
-
 @pytest.mark.parametrize("suffix", ["step", "igs"])
-@pytest.mark.parametrize("seed", some(10, 0, 5))
+@pytest.mark.parametrize("seed", mostly_long(range(10), 0, 5))
 def test_a_random_panel_is_a_panel_by_far(seed: int, suffix: str) -> None:
     made = panel(seed)
     graph = samples.read(made.shape, suffix, made.unit).graph()
@@ -104,7 +103,7 @@ def test_a_random_panel_is_a_panel_by_far(seed: int, suffix: str) -> None:
     assert SurfaceFamily().suits(graph).score < 0.25
 
 
-@pytest.mark.parametrize("seed", some(12, 0, 2, 9))
+@pytest.mark.parametrize("seed", mostly_long(range(12), 0, 2, 9))
 def test_a_random_panel_with_leaning_walls_and_curved_floors_is_a_panel(seed: int) -> None:
     first, second, *_ = ratings(samples.read(leaning_panel(seed).shape).graph())
     assert first.name == "panel" and first.suits.score > second.suits.score
@@ -118,7 +117,7 @@ def test_a_curved_floor_between_walls_is_a_panels_and_a_hollow_in_a_plate_is_not
 
 
 @pytest.mark.parametrize("suffix", ["step", "igs"])
-@pytest.mark.parametrize("seed", some(10, 0, 4))
+@pytest.mark.parametrize("seed", mostly_long(range(10), 0, 4))
 def test_a_random_curved_plate_is_a_part_of_curved_surfaces_by_far(seed: int, suffix: str) -> None:
     made = plate(seed)
     graph = samples.read(made.shape, suffix, made.unit).graph()
@@ -126,14 +125,20 @@ def test_a_random_curved_plate_is_a_part_of_curved_surfaces_by_far(seed: int, su
     assert PanelFamily().suits(graph).score < 0.8
 
 
+@cache
+def still_and_moved(make) -> tuple[FaceGraph, FaceGraph]:
+    """Return the graph of a part, and the same seen from far away and askew."""
+    still, _ = graph_of(0, make)
+    pick = np.random.default_rng(11)
+    return still, still.in_frame(
+        Frame(pick.uniform(-1000.0, 1000.0, 3), pick.normal(size=3), pick.normal(size=3))
+    )
+
+
 @pytest.mark.parametrize("kind", [ImpellerFamily(), CasingFamily(), PanelFamily(), SurfaceFamily()])
 @pytest.mark.parametrize("make", [round_parts.wheel, round_parts.shell])
 def test_a_kind_does_not_depend_on_place_and_size(kind, make) -> None:
-    still, _ = graph_of(0, make)
-    pick = np.random.default_rng(11)
-    moved = still.in_frame(
-        Frame(pick.uniform(-1000.0, 1000.0, 3), pick.normal(size=3), pick.normal(size=3))
-    )
+    still, moved = still_and_moved(make)
     assert kind.suits(moved).score == pytest.approx(kind.suits(still).score, abs=1e-3)
 
 

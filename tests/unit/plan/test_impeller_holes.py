@@ -110,6 +110,7 @@ def test_holes_that_neither_setup_reaches_are_told_of():
     assert told and all(f.severity is not Severity.INFO for f in told)
 
 
+@pytest.mark.long
 def test_a_wheel_with_holes_in_its_back_is_released():
     engine, session = bolted()
     session = engine.run(session)

@@ -45,7 +45,7 @@ def test_pockets_that_share_their_space_are_one_with_two_floors(tmp_path):
     "pockets",
     [
         ((6.0, 66.0, 5.0, 4.0), (64.0, 114.0, 8.5, 4.0)),
-        ((6.0, 64.5, 6.0, 2.0), (64.0, 114.0, 5.5, 0.0)),
+        pytest.param(((6.0, 64.5, 6.0, 2.0), (64.0, 114.0, 5.5, 0.0)), marks=pytest.mark.long),
     ],
     ids=["a fillet cut off by a higher floor", "a lip between fillet and wall"],
 )

@@ -9,6 +9,7 @@ import pytest
 
 import leaning_pockets
 import samples
+from long_mark import mostly_long
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
 
@@ -80,7 +81,7 @@ def test_a_pocket_of_upright_walls_over_a_curved_floor_is_planned_as_before() ->
     assert "swarf" not in kinds(routed("bowl"))
 
 
-@pytest.mark.parametrize("name", ["away", "over", "over a fillet"])
+@pytest.mark.parametrize("name", mostly_long(["away", "over", "over a fillet"], "over"))
 def test_swarf_milled_walls_are_proven(name: str) -> None:
     engine = Engine()
     words = {"setup.machine": "Trunnion 650", "repair.rounds": 0}

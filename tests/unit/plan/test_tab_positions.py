@@ -121,7 +121,7 @@ def test_no_tab_is_in_a_corner_and_none_at_another(seed: int, count: int) -> Non
         assert not len(others) or np.hypot(*(others - tab.middle).T).min() >= 2 * half + FORM.width
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(st.integers(0, 10_000))
 def test_paths_leave_the_tabs_and_nothing_else_of_the_channel(seed: int) -> None:
     outline = random_outline(seed)

@@ -8,6 +8,7 @@ import cadquery as cq
 import numpy as np
 import pytest
 
+from long_mark import mostly_long
 from parts import PARTS, needs_parts
 from samples import read
 from scoring import faces_by_kind
@@ -22,13 +23,6 @@ from trunnion.settings import choose
 
 BASE = 6
 """Faces of a seeded plate without local features: its top, its bottom and four sides."""
-
-
-def long_from(first: int, last: int, *quick: int):
-    """Return seeds, all but the quick ones marked long."""
-    return [
-        s if s in quick else pytest.param(s, marks=pytest.mark.long) for s in range(first, last)
-    ]
 
 
 def recognised(part, **words):
@@ -61,7 +55,7 @@ def pieces(graph, tags: set[int]) -> int:
     return count
 
 
-@pytest.mark.parametrize("seed", long_from(0, 16, 1, 2, 6, 10))
+@pytest.mark.parametrize("seed", mostly_long(range(16), 1, 2, 6, 10))
 def test_all_that_stands_on_a_plate_is_proposed_and_nothing_else(seed: int) -> None:
     made = plate(seed)
     part = in_file(made, "igs" if seed % 3 == 2 else "step")
@@ -70,7 +64,7 @@ def test_all_that_stands_on_a_plate_is_proposed_and_nothing_else(seed: int) -> N
     assert len(part.tags) - len(local) == BASE
 
 
-@pytest.mark.parametrize("seed", long_from(0, 8, 4, 7))
+@pytest.mark.parametrize("seed", mostly_long(range(8), 4))
 def test_the_splitters_of_a_fan_are_proposed_and_nothing_else(seed: int) -> None:
     made = split_fan(seed)
     part = in_file(made, "igs" if seed % 3 == 1 else "step")
@@ -82,7 +76,7 @@ def test_the_splitters_of_a_fan_are_proposed_and_nothing_else(seed: int) -> None
         assert len(part.tags) - len(local) == 5 * made.counts["blade"] + 3
 
 
-@pytest.mark.parametrize("seed", long_from(0, 3))
+@pytest.mark.parametrize("seed", mostly_long(range(3)))
 def test_equal_blades_are_what_a_fan_is_and_none_is_proposed(seed: int) -> None:
     found = recognised(in_file(fan(seed)))
     assert not local_of(found)
@@ -157,12 +151,9 @@ GROUPINGS = (("aligned", "features"), ("invariant", "features_by_invariant_size"
 @needs_parts
 @pytest.mark.parametrize(
     "name",
-    [
-        "D1.step",
-        "D2.igs",
-        "D3.step",
-        *(pytest.param(n, marks=pytest.mark.long) for n in ("D1.igs", "D2.step", "D3.igs")),
-    ],
+    mostly_long(
+        [f"D{n}.{suffix}" for n in (1, 2, 3) for suffix in ("step", "igs")], "D1.step", "D2.igs"
+    ),
 )
 def test_local_features_are_those_of_the_truth(name: str) -> None:
     truth = json.loads((PARTS / "surface" / f"{name[:2]}.truth.json").read_text())

@@ -10,6 +10,7 @@ import pytest
 
 import round_parts
 import samples
+from long_mark import mostly_long
 from parts import PARTS, needs_parts
 from scoring import scored, truth_of
 from seeded.impellers import SeededImpeller, impeller
@@ -26,8 +27,8 @@ from trunnion.recognize.impeller.settings import CLOCKWISE, ImpellerSettings
 PATIENT = ReadLimits(seconds=1000.0)
 QUICK = (1,)
 """Two rows of splitters, walls in two pieces, more bolt holes than blades."""
-QUICK_ROUNDED = (3, 4)
-"""Walls in two pieces and the lathe's faces in sectors; splitters whose round leading edges are raked far back."""
+QUICK_ROUNDED = (3,)
+"""Walls in two pieces and the lathe's faces in sectors."""
 
 
 def recognized(part: Part, **settings):
@@ -46,10 +47,6 @@ def rounded_wheel(seed: int) -> tuple[SeededImpeller, Part]:
     return made, samples.read(made.shape, unit=made.unit)
 
 
-def some(count: int, *quick: int):
-    return [k if k in quick else pytest.param(k, marks=pytest.mark.long) for k in range(count)]
-
-
 def senses(part: Part, found, feature, role: str) -> np.ndarray:
     """Return how far normals of a feature's faces look round the frame's z, right-handed."""
     graph = part.graph()
@@ -59,7 +56,7 @@ def senses(part: Part, found, feature, role: str) -> np.ndarray:
     return normal[:, 1] * point[:, 0] - normal[:, 0] * point[:, 1]
 
 
-@pytest.mark.parametrize("seed", some(20, *QUICK))
+@pytest.mark.parametrize("seed", mostly_long(range(20), *QUICK))
 def test_a_random_wheel_has_the_features_that_it_was_made_with(seed: int) -> None:
     made, part = wheel(seed)
     found = recognized(part)
@@ -71,7 +68,7 @@ def test_a_random_wheel_has_the_features_that_it_was_made_with(seed: int) -> Non
         assert set(roles) == {"leading_edge", "trailing_edge", "shroud"}
 
 
-@pytest.mark.parametrize("seed", some(20, *QUICK))
+@pytest.mark.parametrize("seed", mostly_long(range(20), *QUICK))
 def test_the_pressure_side_faces_the_way_of_turning(seed: int) -> None:
     made, part = wheel(seed)
     found = recognized(part)
@@ -80,7 +77,7 @@ def test_the_pressure_side_faces_the_way_of_turning(seed: int) -> None:
         assert (senses(part, found, blade, "suction") * made.turns < 0.0).all()
 
 
-@pytest.mark.parametrize("seed", some(12, *QUICK_ROUNDED))
+@pytest.mark.parametrize("seed", mostly_long(range(12), *QUICK_ROUNDED))
 def test_a_random_wheel_with_root_fillets_has_the_features_that_it_was_made_with(seed: int) -> None:
     made, part = rounded_wheel(seed)
     found = recognized(part)
@@ -115,7 +112,7 @@ def test_a_person_may_say_which_way_the_wheel_turns(seed: int) -> None:
     assert (senses(part, found, blade, "pressure") < 0.0).all()
 
 
-@pytest.mark.parametrize("seed", some(20, *QUICK))
+@pytest.mark.parametrize("seed", mostly_long(range(20), *QUICK))
 def test_blades_stand_in_order_and_splitters_between_their_main_blades(seed: int) -> None:
     made, part = wheel(seed)
     found = recognized(part)

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from long_mark import mostly_long
 from parts import PARTS, needs_parts
 from scoring import scored, truth_of
 from trunnion.model.feature import Recognition
@@ -87,9 +88,9 @@ def moved(part: Part, kind: str) -> tuple[Any, Callable[[list[float]], list[floa
         ("B1", "far away", "mm", "step"),
         ("B1", "", "inch", "step"),
         ("B1", "turned", "inch", "igs"),
-        ("B3", "turned", "mm", "igs"),
-        ("B3", "mirrored", "mm", "step"),
-        ("B3", "far away", "inch", "step"),
+        pytest.param("B3", "turned", "mm", "igs", marks=pytest.mark.long),
+        pytest.param("B3", "mirrored", "mm", "step", marks=pytest.mark.long),
+        pytest.param("B3", "far away", "inch", "step", marks=pytest.mark.long),
     ],
 )
 def test_a_panel_is_found_wherever_it_lies_and_in_inches(
@@ -104,7 +105,14 @@ def test_a_panel_is_found_wherever_it_lies_and_in_inches(
 
 
 @pytest.mark.parametrize(
-    "name", [f"B{n}.{suffix}" for n in (2, 3, 4, 5) for suffix in ("step", "igs")]
+    "name",
+    mostly_long(
+        [f"B{n}.{suffix}" for n in (2, 3, 4, 5) for suffix in ("step", "igs")],
+        "B2.step",
+        "B3.step",
+        "B4.step",
+        "B5.igs",
+    ),
 )
 def test_all_of_panels_with_pockets_ribs_holes_and_details_is_found(name: str) -> None:
     found = part_of(name)[1]
@@ -114,7 +122,9 @@ def test_all_of_panels_with_pockets_ribs_holes_and_details_is_found(name: str) -
     assert wanted == printed == matched
 
 
-@pytest.mark.parametrize("name", ["B2.step", "B3.igs", "B4.step", "B5.igs"])
+@pytest.mark.parametrize(
+    "name", mostly_long(["B2.step", "B3.igs", "B4.step", "B5.igs"], "B2.step", "B4.step", "B5.igs")
+)
 def test_the_sizes_of_holes_are_the_truths(name: str) -> None:
     found, truth = part_of(name)[1], truth_of(name[:2])
     wanted, holes = truth["features"], 0
@@ -128,7 +138,7 @@ def test_the_sizes_of_holes_are_the_truths(name: str) -> None:
     assert holes == truth["counts"]["hole"]
 
 
-@pytest.mark.parametrize("name", ["B3.step", "B3.igs"])
+@pytest.mark.parametrize("name", mostly_long(["B3.step", "B3.igs"], "B3.step"))
 def test_the_sizes_of_chamfers_and_pits_are_the_truths(name: str) -> None:
     found, wanted = part_of(name)[1], truth_of("B3")["features"]
     seen = []

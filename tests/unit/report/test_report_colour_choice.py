@@ -130,7 +130,7 @@ def test_the_largest_contrast_is_that_of_black_and_white():
 
 
 @needs_parts
-@pytest.mark.parametrize("name", ["D1", "D3"])
+@pytest.mark.parametrize("name", ["D1", pytest.param("D3", marks=pytest.mark.long)])
 def test_groups_that_meet_on_a_real_part_are_told_apart(name):
     from trunnion.pipeline import Engine
 

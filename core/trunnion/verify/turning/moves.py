@@ -135,7 +135,7 @@ def swept(shape: Floats, poses: Floats) -> BaseGeometry:
     """Return what a convex outline (m, 2) sweeps that is carried along points (k, 2): the hulls of neighbours together."""
     a = poses[:-1, None] + shape
     b = poses[1:, None] + shape
-    hulls = shapely.convex_hull(shapely.multipoints(np.concatenate([a, b], axis=1)))
+    hulls = shapely.convex_hull(shapely.linestrings(np.concatenate([a, b], axis=1)))
     return shapely.union_all(hulls)
 
 

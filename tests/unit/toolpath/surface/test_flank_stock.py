@@ -11,6 +11,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from funnels import funnel
+from long_mark import mostly_long
 from surface_drives import DATA, driven, grid
 from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import WORLD
@@ -264,7 +265,7 @@ def test_a_closed_pass_begins_behind_what_is_left_out_of_it() -> None:
     assert sides == pytest.approx([8.0, 22.0], abs=0.3)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", mostly_long(range(8), 3, 4))
 def test_no_pass_that_is_left_meets_points_of_a_fine_grid(seed: int) -> None:
     pick = np.random.default_rng(seed)
     _, _, stock = blocks()
@@ -294,7 +295,7 @@ def met(passes: Sequence[Pass], stand: Points) -> int:
     return found
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", mostly_long(range(6), 0, 3))
 def test_the_kernel_that_asks_where_flutes_have_been_and_the_plain_one_agree(seed: int) -> None:
     pick = np.random.default_rng(seed)
     cuts = FluteCuts.within(np.array([1.0, 0.0, -2.0]), np.array([13.0, 11.0, 9.0]), 1.7)
