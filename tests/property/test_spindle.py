@@ -97,7 +97,8 @@ def test_what_is_not_used_leaves_digests_and_json_as_they_were():
         "layer_depth",
         "layer_width",
         "layer_share",
-        "link_feed",
+        "fastest_link",
+        "link_share",
     }
     assert digest(DATA) == "90568a01d1978e9b"
     by_turns = replace(DATA, feed_mode=FeedMode.REVOLUTION)

@@ -28,7 +28,8 @@ class CuttingData:
     the spindle allows less (0: the same); `entry_angle` degrees: the slope that the material bears helices and ramps at (0: nothing is
     known of it); `ramp_share`: what of the feed helices and ramps are gone down with (0: they plunge); of data for
     constant engagement `layer_depth` and `layer_width` mm of layers that slots open, and `layer_share` of the feed in them (0: `depth` and
-    `width`); `link_feed` mm/min: the feed of links through what was cleared (0: `feed`). Where spindle speed and feed were
+    `width`); `link_share`: how many times the feed links
+    through what was cleared may go at, and `fastest_link` mm/min at most (0: the feed). Where spindle speed and feed were
     chosen by the optimiser: `handbook_spindle` 1/min and `handbook_feed` mm/min of the material's tables (0 elsewhere), and `bound_by`,
     what stops a quicker choice, in words.
     Of a tool in a locked spindle `spindle` is the table's speed, `feed` the ground's under it and `feed_per_tooth` the feed in mm a turn of
@@ -66,7 +67,8 @@ class CuttingData:
     layer_depth: float = added(0.0, written=False)
     layer_width: float = added(0.0, written=False)
     layer_share: float = added(1.0, written=False)
-    link_feed: float = added(0.0, written=False)
+    fastest_link: float = added(0.0, written=False)
+    link_share: float = added(1.0, written=False)
 
     def __post_init__(self) -> None:
         if self.spindle_mode is SpindleMode.SURFACE and self.highest_spindle <= 0.0:
@@ -82,6 +84,11 @@ class CuttingData:
         a plunge; a plunge's feed at least."""
         down = self.plunge_feed / math.sin(slope) if slope > 0.0 else math.inf
         return max(self.plunge_feed, min(self.ramp_share * self.feed, down))
+
+    @property
+    def link_feed(self) -> float:
+        """The feed in mm/min of links through what was cleared."""
+        return max(min(self.link_share * self.feed, self.fastest_link), self.feed)
 
     @property
     def is_engaged(self) -> bool:

@@ -121,6 +121,10 @@ class CuttingSettings:
     )
 
 
+FILM = 0.012
+"""Radii: thickness of what passes at constant engagement leave to each other, and a link may scrape off."""
+
+
 def chip_thinning(diameter: float, width: float) -> float:
     """Return by how much a chip is thinner than the feed per tooth: D / (2 sqrt(ae (D - ae))) for ae < D / 2, else 1.
 
@@ -130,6 +134,14 @@ def chip_thinning(diameter: float, width: float) -> float:
     if width >= diameter / 2:
         return 1.0
     return diameter / (2.0 * math.sqrt(width * (diameter - width)))
+
+
+def _chip_share(tool: Tool, width: float) -> float:
+    """Return the thickest chip of a cut of a width (mm) over the feed per tooth: the sine of the angle of contact, 1 from half the diameter
+    on."""
+    if width >= tool.radius:
+        return 1.0
+    return math.sin(math.acos(1.0 - width / tool.radius))
 
 
 def slenderness(tool: Tool, settings: CuttingSettings) -> float:
@@ -258,5 +270,6 @@ def cutting_data(
         entry_angle=material.entry_angle if kind == ROUGH else 0.0,
         # Finishing enters thin skins: there a ramp takes no time, and would be the largest removal of the operation.
         ramp_share=settings.ramp_share if kind in ROUGHING else 0.0,
-        link_feed=fastest,
+        fastest_link=fastest,
+        link_share=_chip_share(tool, width) / _chip_share(tool, FILM * tool.radius),
     )

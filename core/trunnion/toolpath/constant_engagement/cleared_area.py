@@ -16,6 +16,7 @@ from scipy import ndimage
 from trunnion.geometry.arrays import Bools, Floats
 from trunnion.geometry.kernels import constant_engagement as kernels
 from trunnion.geometry.plane.region import Region
+from trunnion.plan.cutting.milling import FILM
 
 CELLS_A_RADIUS = 16
 """Cells of the grid along the cutter's radius: a bilinear circle is then nowhere farther from the true one than 0.0005 radii."""
@@ -31,9 +32,6 @@ THIN = 0.006
 
 MOST_LOOKED_AT = 400
 """Positions among which the deepest is looked for."""
-
-FILM = 0.012
-"""Radii: what a link may scrape off: marches leave no more to each other."""
 
 BLOCK = 8
 """Nodes along the side of a block that is looked at as a whole first."""

@@ -61,7 +61,7 @@ of 100 to 300 mm."""
 LINK = 0.1 / SECONDS_PER_MINUTE
 """min that a link takes to speed up and to come to rest."""
 
-FED_LINK = 0.5 / SECONDS_PER_MINUTE
+FED_LINK = 3.0 / SECONDS_PER_MINUTE
 """min that a link through what was cleared may take at its feed; over longer ways the cutter is lifted."""
 
 STRIP = 1.0
@@ -139,7 +139,7 @@ class _Piece:
             if after.centre is None
         ]
         cut = sum(p.curve.length for p in self.laid.passes) / (self.share * data.feed)
-        return cut + sum(links) / (data.link_feed or data.feed) + LINK * len(links)
+        return cut + sum(links) / data.link_feed + LINK * len(links)
 
 
 class EngagedClearing:
@@ -312,7 +312,7 @@ class EngagedClearing:
             return
         here = builder.here
         if one.straight and here is not None:
-            feed = self._data.link_feed or self._data.feed
+            feed = self._data.link_feed
             if float(np.hypot(*(start - here[:2]))) <= FED_LINK * feed:
                 builder.line((*start, layer.z), feed, Mark.LINK)
                 return

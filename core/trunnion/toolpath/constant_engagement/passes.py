@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.geometry.arrays import Floats
+from trunnion.plan.cutting.milling import FILM
 from trunnion.progress import Progress
 from trunnion.toolpath.constant_engagement.cleared_area import ClearedArea, Remaining
 
@@ -26,9 +27,6 @@ STEP = 1.0 / 12.0
 
 RIGHT_TURN = 0.5
 """Radii of the tightest turn towards the material."""
-
-LEAST_LAYER = 0.012
-"""Radii: thickness of the thinnest layer that counts as material met: less is what the grid blurs."""
 
 RUN_IN = 0.5
 """Radii that a pass begins before it meets material."""
@@ -99,7 +97,7 @@ class _Laying:
     ) -> None:
         self._area, self._angle, self._helix_radius = area, angle, helix_radius
         self._progress = progress
-        self._least = math.acos(1.0 - LEAST_LAYER)
+        self._least = math.acos(1.0 - FILM)
         self._passes: list[EngagedPass] = []
         self._ends: list[Floats] = []
 
