@@ -203,7 +203,7 @@ class ClearedArea:
             )
 
     def is_free(self, position: Floats) -> bool:
-        """Return whether the cutter is_material at a position (2,) of the axis region in what was cleared."""
+        """Return whether the cutter is free at a position (2,) of the axis region: in what was cleared with all its rim."""
         return bool(
             kernels.disc_is_free(
                 self.uncut,

@@ -64,6 +64,9 @@ LINK = 0.1 / SECONDS_PER_MINUTE
 FED_LINK = 3.0 / SECONDS_PER_MINUTE
 """min that a link through what was cleared may take at its feed; over longer ways the cutter is lifted."""
 
+RIM = 3.0
+"""Cells at the rim of an area that a wall may keep high though everything is cut."""
+
 STRIP = 1.0
 """Cells of the stock: what stands no wider than twice that is the rim of something that was cut, and no more is known of it."""
 
@@ -122,7 +125,7 @@ class _Laid:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Piece:
-    """A piece of an axis region with the passes over it, which are cut at a share of the feed; `top` mm is as high as material above."""
+    """A piece of an axis region with the passes over it, which are cut at a share of the feed; `top` mm is as high as material stands."""
 
     region: Region
     top: float
@@ -174,8 +177,15 @@ class EngagedClearing:
             return
         for piece in pieces:
             self._cut_piece(builder, layer, piece, progress)
-        if necks:
+        if necks and not _is_cut(builder, layer, necks.offset(radius)):
             self._cut_necks(builder, layer, necks, top, progress)
+        if layer.wanted is not None:
+            stock = builder.stock()
+            inner = reached.offset(radius - RIM * stock.cell).intersect(layer.wanted)
+            if not _is_cut(builder, layer, inner):
+                # What the grid took for the rim of something is cut where the stock still knows it.
+                clip = layer.clip or layer.wanted.offset(radius)
+                self._cut_by_rings(builder, replace(layer, clip=clip), top, progress)
 
     def _pieces(
         self,
@@ -332,6 +342,11 @@ def _fitted(one: EngagedPass, within: float) -> Curve:
     """Return a pass as lines and arcs."""
     points, bulges = arcs_through_many(one.points, within)
     return Curve(points, np.append(bulges, 0.0), False)
+
+
+def _is_cut(builder: PathBuilder, layer: ClearingLayer, area: Region) -> bool:
+    """Return whether no stock stands over a layer in an area."""
+    return not len(builder.stock().positions_above(layer.z + layer.worth, area))
 
 
 def _parts_in(curve: Curve, clip: Region) -> list[Curve]:

@@ -60,8 +60,8 @@ LOST = 3
 class EngagedPass:
     """A pass by positions (k, 2) of the axis, a heading (k,) rad and the engagement (k,) rad at each.
 
-    `entered`: the cutter goes down into full material here, by a helix about `centre` (2,) that ends at the first position. `straight`:
-    the cutter comes straight from the end of the pass before through what is cleared by then.
+    Where `centre` (2,) is given the cutter goes down into full material, by a helix about it that ends at the first position. `straight`:
+    it comes straight from the end of the pass before through what is cleared by then.
     """
 
     points: Floats
@@ -86,7 +86,7 @@ def engaged_passes(
 
 
 class _Laying:
-    """Passes in the making."""
+    """Passes in the making; `_ends` (3,) are positions and headings behind which more material may be found along the wall."""
 
     def __init__(
         self,
@@ -111,7 +111,7 @@ class _Laying:
             count = len(self._passes)
             self._from(begin, centre)
             while self._ends:
-                # What is beside the end of a pass comes before what is elsewhere: the last pass's end first.
+                # What comes next along the wall behind the last pass is cut before what is elsewhere.
                 self._from(self._ends.pop(), None, SCOUTED)
             if len(self._passes) == count:
                 key = self._key(begin)
@@ -160,7 +160,7 @@ class _Laying:
         )
 
     def _longest(self) -> float:
-        """Return how long in mm a pass may be: as long as one that clears all of the area by layers of a hundredth of the radius."""
+        """Return how long in mm a pass may be: as long as one that clears all of the area by layers of a twentieth of the radius."""
         area = float((self._area.depth >= 0.0).sum()) * self._area.cell**2
         return area / (0.05 * self._area.radius) + 100.0 * self._area.radius
 
@@ -218,7 +218,7 @@ class _Laying:
     def _entered(
         self, rest: Remaining, lost: dict[tuple[int, int], int]
     ) -> tuple[Floats, Floats] | None:
-        """Return where a helix ends in a place that nothing free is beside, its full circle cleared, and its centre."""
+        """Return where a helix ends in a place that is entered from above, its circle cleared, and its centre; None where none fits."""
         centre, depth = self._area.deepest(rest.positions)
         helix = self._helix_radius(depth)
         if helix <= 0.0 or lost.get(self._key(centre), 0):
