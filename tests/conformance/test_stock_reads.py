@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import cadquery as cq
 import numpy as np
 import pytest
 
-from subjects import PLANNERS, dear_ones_long, own, until
+from long_mark import mostly_long
+from samples import written
+from subjects import DEAR, PLANNERS, own, until
 from trunnion.pipeline import Engine
 from trunnion.pipeline.operation_path import PathJob
 from trunnion.pipeline.toolpaths import make_paths
@@ -17,14 +20,26 @@ from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.stock.stock_reads import EVERYWHERE
-from trunnion_resources import sample
+
+
+def eight_pockets():
+    """Return a panel with eight pockets of three depths, of which no two touch."""
+    made = cq.Workplane("XY").box(340.0, 180.0, 20.0, centered=False).edges("|Z").fillet(10.0)
+    for n in range(8):
+        depth = (8.0, 12.0, 16.0)[n % 3]
+        pocket = cq.Workplane("XY").box(50.0, 45.0, depth, centered=(True, True, False))
+        pocket = pocket.edges("|Z").fillet(8.0).faces("<Z").edges().fillet(3.0)
+        place = (50.0 + 80.0 * (n % 4), 50.0 + 80.0 * (n // 4), 20.0 - depth)
+        made = made.cut(pocket.translate(place))
+    return made.val().wrapped
 
 
 @pytest.fixture(scope="module")
 def panel():
-    """An engine and its session of the sample panel, with toolpaths."""
+    """An engine and its session of a panel with many features, with toolpaths."""
     engine = Engine()
-    return engine, engine.run(engine.open(sample("B1")), until="toolpath")
+    session = engine.open(written(eight_pockets(), name="eight-pockets"))
+    return engine, engine.run(session, until="toolpath")
 
 
 def other_elsewhere(stock: PlanningStock, box: tuple[float, ...], rng) -> PlanningStock:
@@ -73,7 +88,9 @@ def test_paths_of_a_panel_do_not_depend_on_stock_that_they_did_not_look_at(panel
     assert np.median(list(checked.values())) < 0.2
 
 
-@pytest.mark.parametrize("name", dear_ones_long(PLANNERS))
+@pytest.mark.parametrize(
+    "name", mostly_long(PLANNERS, *(n for n in PLANNERS if n not in (*DEAR, "casing")))
+)
 def test_paths_of_no_family_depend_on_stock_that_they_did_not_look_at(name, checked):
     engine, session = own(name)[0], until(name, "optimize")
     make_paths(replace(session, paths=()), engine.context, NO_PROGRESS)

@@ -205,7 +205,7 @@ def scaled(tool, share):
     )
 
 
-@by_name
+@by_name_often
 def test_what_it_leaves_is_said_in_words_with_what_to_do(name):
     for found in (made(name), coarse(name)):
         assert len(found.path) or found.findings
@@ -313,7 +313,7 @@ def test_a_smaller_cutter_leaves_no_more(name, times):
     assert standing(name, tool, made(name)) <= standing(name, larger, with_larger) + UNEVEN
 
 
-@by_name
+@by_name_often
 def test_it_brings_its_faces_nearer_to_what_is_wanted(name):
     """Else the check above would compare what nothing was taken off."""
     tool = case(name).operation.tool

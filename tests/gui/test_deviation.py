@@ -7,6 +7,7 @@ import pytest
 from fake_engine import FLOOR, GOUGE, LEFT
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from shared_window import shared_window, wait
 from test_viewport import hue, pixel
 
 from trunnion.report.palette import load_palette
@@ -15,13 +16,25 @@ BUTTON = Qt.MouseButton.LeftButton
 SOUND = (60.0, 70.0, FLOOR)
 
 
+@pytest.fixture(scope="module")
+def proven(qapp, tmp_path_factory):
+    """One window with the made-up part programmed, for all tests here that look at its map."""
+    folder = tmp_path_factory.mktemp("proven")
+    (folder / "tray.step").write_text("a made-up part")
+    with shared_window(folder, "fake_engine:FakeEngine") as window:
+        window.document.files.open(folder / "tray.step")
+        wait(window)
+        window.document.program()
+        wait(window)
+        yield window
+
+
 @pytest.fixture
-def mapped(window, part_file, idle, qtbot):
-    """A window that shows the made-up part's deviation from the top."""
-    window.document.files.open(part_file)
-    idle(window)
-    window.document.program()
-    idle(window)
+def mapped(proven, qtbot):
+    """That window with the part's deviation from the top, switched on by a click."""
+    window = proven
+    if window.deviation.is_on:
+        window.registry.run("view.deviation")
     window.registry.run("view.top")
     QTest.mouseClick(
         window.toolbar.widgetForAction(window.registry.action("view.deviation")), BUTTON

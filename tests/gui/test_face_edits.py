@@ -6,6 +6,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QMenu
+from shared_window import shared_window, taken_back, wait
 
 CTRL = Qt.KeyboardModifier.ControlModifier
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
@@ -13,15 +14,22 @@ ON_LEFT, ON_RIGHT = (20.0, 25.0, 4.0), (110.0, 50.0, 4.0)
 """Places on the floors of both pockets."""
 
 
+@pytest.fixture(scope="module")
+def panel(qapp, tmp_path_factory, sample_panel):
+    """One window for all tests here, with the features of the small panel, seen from the top."""
+    with shared_window(tmp_path_factory.mktemp("settings")) as window:
+        window.document.files.open(sample_panel)
+        wait(window)
+        window.document.run("recognize", "Recognize")
+        wait(window)
+        window.registry.run("view.top")
+        yield window
+
+
 @pytest.fixture
-def recognised(make_window, sample_panel, idle, qtbot):
-    window = make_window("trunnion.pipeline:Engine")
-    window.document.files.open(sample_panel)
-    idle(window)
-    window.document.run("recognize", "Recognize")
-    idle(window)
-    window.registry.run("view.top")
-    return window
+def recognised(panel):
+    with taken_back(panel) as window:
+        yield window
 
 
 def click(window, place, button=LEFT, keys=Qt.KeyboardModifier.NoModifier) -> None:

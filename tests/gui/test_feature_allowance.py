@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from shared_window import shared_window, taken_back, wait
 
 from kept_parts import ribbed_file
 from person import typed
@@ -13,15 +14,23 @@ from trunnion_gui.edits import with_choice
 WALL, FLOOR = "feature.wall_allowance", "feature.floor_allowance"
 
 
+@pytest.fixture(scope="module")
+def panel(qapp, tmp_path_factory):
+    """One window for all tests here, with the features of the part."""
+    folder = tmp_path_factory.mktemp("panel")
+    with shared_window(folder) as window:
+        window.document.files.open(ribbed_file(folder / "ribbed.step"))
+        wait(window)
+        window.document.edit("panel", with_choice("recognize.family", "panel"))
+        window.document.run("recognize", "Recognize")
+        wait(window)
+        yield window
+
+
 @pytest.fixture
-def recognised(make_window, tmp_path, idle):
-    window = make_window("trunnion.pipeline:Engine")
-    window.document.files.open(ribbed_file(tmp_path / "ribbed.step"))
-    idle(window)
-    window.document.edit("panel", with_choice("recognize.family", "panel"))
-    window.document.run("recognize", "Recognize")
-    idle(window)
-    return window
+def recognised(panel):
+    with taken_back(panel) as window:
+        yield window
 
 
 def fields(window):

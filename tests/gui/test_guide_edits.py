@@ -5,21 +5,28 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from PySide6.QtTest import QTest
+from shared_window import shared_window, taken_back, wait
 from test_face_edits import RIGHT, entry, open_menu
 
 LEAVE, LEAD = "Leave out of", "Lead along"
 
 
+@pytest.fixture(scope="module")
+def guided(qapp, tmp_path_factory, sample_panel):
+    """One window for all tests here, with operations of the small panel, and the guide lines of the selected one switched on."""
+    with shared_window(tmp_path_factory.mktemp("settings")) as window:
+        window.document.files.open(sample_panel)
+        wait(window)
+        window.document.run("route", "Route")
+        wait(window)
+        window.registry.action("view.guides").trigger()
+        yield window
+
+
 @pytest.fixture
-def routed(make_window, sample_panel, idle):
-    """A window with operations of the small panel, and the guide lines of the selected one switched on."""
-    window = make_window("trunnion.pipeline:Engine")
-    window.document.files.open(sample_panel)
-    idle(window)
-    window.document.run("route", "Route")
-    idle(window)
-    window.registry.action("view.guides").trigger()
-    return window
+def routed(guided):
+    with taken_back(guided) as window:
+        yield window
 
 
 def seen_wall(window, faces):

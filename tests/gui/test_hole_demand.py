@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from shared_window import shared_window, taken_back, wait
 
 from holed import hole, plate
 from person import typed
@@ -12,15 +13,23 @@ from trunnion_gui.edits import with_choice
 HOLES = (hole(20, 15, 10), hole(80, 15, 10), hole(50, 40, 6.8, 16.0, point_angle=140.0))
 
 
+@pytest.fixture(scope="module")
+def panel(qapp, tmp_path_factory):
+    """One window for all tests here, with the features of the part."""
+    folder = tmp_path_factory.mktemp("panel")
+    with shared_window(folder) as window:
+        window.document.files.open(plate(folder / "plate.step", *HOLES))
+        wait(window)
+        window.document.edit("panel", with_choice("recognize.family", "panel"))
+        window.document.run("recognize", "Recognize")
+        wait(window)
+        yield window
+
+
 @pytest.fixture
-def recognised(make_window, tmp_path, idle):
-    window = make_window("trunnion.pipeline:Engine")
-    window.document.files.open(plate(tmp_path / "plate.step", *HOLES))
-    idle(window)
-    window.document.edit("panel", with_choice("recognize.family", "panel"))
-    window.document.run("recognize", "Recognize")
-    idle(window)
-    return window
+def recognised(panel):
+    with taken_back(panel) as window:
+        yield window
 
 
 def holes(window, diameter):

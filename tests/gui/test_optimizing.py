@@ -7,6 +7,7 @@ import os
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from shared_window import shared_window, taken_back, wait
 
 from samples import block_with_pocket
 from trunnion.model.load import LAID
@@ -17,18 +18,25 @@ LEFT = Qt.MouseButton.LeftButton
 GAIN = 4
 
 
+@pytest.fixture(scope="module")
+def opened_once(qapp, tmp_path_factory):
+    """One window for all tests here, with a part whose operations have their cutting data."""
+    with shared_window(tmp_path_factory.mktemp("settings")) as window:
+        window.document.files.open(block_with_pocket())
+        wait(window)
+        window.document.choose("optimize.data", "Cutting data: optimised", "optimised")
+        window.document.run("optimize", "Optimize")
+        wait(window)
+        yield window
+
+
 @pytest.fixture
-def optimised(make_window, qtbot, idle):
-    """A window with a part whose operations have their cutting data."""
-    window = make_window("trunnion.pipeline:Engine")
-    window.document.files.open(block_with_pocket())
-    idle(window, 60000)
-    window.document.choose("optimize.data", "Cutting data: optimised", "optimised")
-    window.document.run("optimize", "Optimize")
-    idle(window, 60000)
-    window.panels["optimize"].fold(False)
-    qtbot.waitUntil(window.panels["optimize"].table.isVisible, timeout=5000)
-    return window
+def optimised(opened_once, qtbot):
+    """That window with its Optimize panel unfolded."""
+    with taken_back(opened_once) as window:
+        window.panels["optimize"].fold(False)
+        qtbot.waitUntil(window.panels["optimize"].table.isVisible, timeout=5000)
+        yield window
 
 
 def click_row(panel, row):

@@ -3,21 +3,34 @@
 from __future__ import annotations
 
 import pytest
+from shared_window import shared_window, wait
 
 from revised_panels import PanelDesign
 from samples import renumbered, written
 
 
+@pytest.fixture(scope="module")
+def planned(qapp, tmp_path_factory):
+    """One window for all tests here, and the project of a panel that is planned and whose first roughing a person made slower."""
+    folder = tmp_path_factory.mktemp("planned")
+    with shared_window(folder) as window:
+        window.document.files.open(written(PanelDesign().shape(), name="panel"))
+        wait(window)
+        window.document.run("optimize", "Optimize")
+        wait(window)
+        window.document.change_operation("rough-pocket-01", "Feed", "operation.feed", 3000.0)
+        wait(window)
+        window.document.files.save(folder / "planned.trunnion")
+        wait(window)
+        yield window, folder / "planned.trunnion"
+
+
 @pytest.fixture
-def changed(make_window, idle, monkeypatch):
-    """A window over the real engine with a panel that is planned and whose first roughing a person made slower, and its revision."""
-    window = make_window("trunnion.pipeline:Engine")
-    window.document.files.open(written(PanelDesign().shape(), name="panel"))
-    idle(window)
-    window.document.run("optimize", "Optimize")
-    idle(window)
-    window.document.change_operation("rough-pocket-01", "Feed", "operation.feed", 3000.0)
-    idle(window)
+def changed(planned, monkeypatch):
+    """That window with its project open, and a revision of the panel to choose."""
+    window, project = planned
+    window.document.files.open(project)
+    wait(window)
     revision = written(renumbered(PanelDesign(left_floor=6.0, third=True).shape()), name="panel_b")
     monkeypatch.setattr(window.dialogs, "revised_path", lambda: str(revision))
     return window

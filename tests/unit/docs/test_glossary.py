@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter, defaultdict
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -108,31 +110,34 @@ def words_of(name: str) -> list[str]:
     return [w.lower() for w in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z0-9]+|[0-9]+", name)]
 
 
-def classes_of(path: Path) -> list[str]:
-    """Return the public classes of a module."""
-    body = ast.parse(path.read_text()).body
-    return [n.name for n in body if isinstance(n, ast.ClassDef) and not n.name.startswith("_")]
+@dataclass(frozen=True)
+class Given:
+    """Names that a module gives: its public classes, and all of functions, methods, parameters, fields, attributes and variables."""
 
-
-def names_of(path: Path) -> set[str]:
-    """Return the names that a module gives: of functions, methods, parameters, fields, attributes and variables."""
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            found.add(node.name)
-        elif isinstance(node, ast.arg):
-            found.add(node.arg)
-        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            found.add(node.id)
-        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
-            found.add(node.attr)
-    return found
+    classes: list[str]
+    names: set[str]
 
 
 @cache
-def names_by_module() -> dict[Path, set[str]]:
-    """Return the names that each module gives; not worked out while tests are collected."""
-    return {path: names_of(path) for path in MODULES}
+def given_by(path: Path) -> Given:
+    """Return the names that a module gives; not worked out while tests are collected."""
+    tree, names = ast.parse(path.read_text()), set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            names.add(node.name)
+        elif isinstance(node, ast.arg):
+            names.add(node.arg)
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            names.add(node.attr)
+    classes = [n.name for n in tree.body if isinstance(n, ast.ClassDef)]
+    return Given([name for name in classes if not name.startswith("_")], names)
+
+
+def by_module(found: Callable[[Path], Mapping[str, set[str]]]) -> dict[str, Mapping[str, set[str]]]:
+    """Return what is found in the names of each module that has any, by its path."""
+    return {str(p.relative_to(ROOT)): names for p in MODULES if (names := found(p))}
 
 
 def private_words(name: str) -> set[str]:
@@ -141,6 +146,7 @@ def private_words(name: str) -> set[str]:
     return {w for w in words_of(name) if w in PRIVATE and bare not in ALLOWED.get(w, "").split()}
 
 
+@cache
 def known_words() -> set[str]:
     return {w for row in GLOSSARY for w in words_of(row[0])} | PLAIN
 
@@ -156,11 +162,13 @@ def strange_words(name: str) -> set[str]:
     return {w for w in words_of(name) if not singulars(w) & known}
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_modules_and_classes_have_words_of_the_glossary_or_plain_ones(path):
-    own = [path.parent.name if path.stem == "__init__" else path.stem, *classes_of(path)]
-    strange = {name: words for name in own if (words := strange_words(name))}
-    assert strange == {}, "use the field's word, and give it a line in docs/words.md"
+def test_modules_and_classes_have_words_of_the_glossary_or_plain_ones():
+    def strange(path):
+        own = path.parent.name if path.stem == "__init__" else path.stem
+        names = [own, *given_by(path).classes]
+        return {name: words for name in names if (words := strange_words(name))}
+
+    assert by_module(strange) == {}, "use the field's word, and give it a line in docs/words.md"
 
 
 def test_a_private_word_is_found():
@@ -170,14 +178,17 @@ def test_a_private_word_is_found():
 
 
 def test_no_class_has_a_private_word():
-    named = {name for path in MODULES for name in classes_of(path)}
+    named = {name for path in MODULES for name in given_by(path).classes}
     assert {n for n in named if set(words_of(n)) & PRIVATE} == set()
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_no_function_parameter_or_variable_has_a_private_word(path):
-    private = {name: words for name in names_by_module()[path] if (words := private_words(name))}
-    assert private == {}, "use the field's word of docs/words.md; one word for one meaning"
+def test_no_function_parameter_or_variable_has_a_private_word():
+    def private(path):
+        return {name: words for name in given_by(path).names if (words := private_words(name))}
+
+    assert by_module(private) == {}, (
+        "use the field's word of docs/words.md; one word for one meaning"
+    )
 
 
 def test_a_private_word_in_any_name_is_found():
@@ -187,14 +198,14 @@ def test_a_private_word_in_any_name_is_found():
 
 
 def test_every_allowed_name_is_in_use():
-    given = {name.strip("_").lower() for names in names_by_module().values() for name in names}
+    given = {name.strip("_").lower() for path in MODULES for name in given_by(path).names}
     assert {name for names in ALLOWED.values() for name in names.split()} - given == set()
 
 
 def test_a_class_name_means_one_thing():
     where = defaultdict(list)
     for path in MODULES:
-        for name in classes_of(path):
+        for name in given_by(path).classes:
             where[name].append(path.name)
     assert {n: w for n, w in where.items() if len(w) > 1 and n not in TWICE} == {}
 
@@ -203,7 +214,7 @@ def test_every_plain_word_is_in_use():
     used = {
         form
         for path in MODULES
-        for name in (path.stem, path.parent.name, *classes_of(path))
+        for name in (path.stem, path.parent.name, *given_by(path).classes)
         for w in words_of(name)
         for form in singulars(w)
     }

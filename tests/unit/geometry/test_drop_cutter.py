@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from long_mark import mostly_long
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import drop_cutter, height_at
 from trunnion.geometry.kernels.cutter_contact.free_run import free_run
 from trunnion.geometry.kernels.cutter_contact.push_cutter import push_cutter
@@ -107,7 +108,7 @@ def test_loose_triangles_of_any_kind(seed: int, name: str) -> None:
     assert np.abs(found - drop_cutter(at, corners, CUTTERS[name], LOWEST)).max() < 1e-9
 
 
-@pytest.mark.parametrize("name", CUTTERS)
+@pytest.mark.parametrize("name", mostly_long(CUTTERS, "flat", "barrel"))
 def test_pushing_is_blocked_just_where_dropping_would_lift_the_tip(name: str) -> None:
     corners = np.array(
         [
@@ -354,7 +355,7 @@ def test_a_second_wall_behind_the_first_one_is_gone_past_too() -> None:
     assert found and run == pytest.approx(25.0 + 8.0 - 7.0, abs=2.0 * CLOSE)
 
 
-@pytest.mark.parametrize("name", CUTTERS)
+@pytest.mark.parametrize("name", mostly_long(CUTTERS, "bull", "cone"))
 def test_the_compiled_loop_finds_what_the_plain_one_does(name: str) -> None:
     points, triangles = wavy(2)
     rng = np.random.default_rng(4)

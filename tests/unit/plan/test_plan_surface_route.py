@@ -136,16 +136,22 @@ def test_what_the_larger_cutter_leaves_is_semi_finished_too(sharp):
     assert set(rest.faces) == set(own.faces)
 
 
-def test_no_larger_cutter_goes_before_one_that_a_person_names(sharp):
+@pytest.fixture(scope="module")
+def with_named_cutter(sharp):
+    """The name of the smaller of that plate's two cutters, and the plate's route where a person names it, and asks for less."""
     own = sharp.process.operation("rest-finish-remaining").cutter.name
-    named_one = routed(_with_sharp_boss(), **{"surface.cutter": own})
-    assert named_one.process.operation("finish-remaining").cutter.name == own
+    return own, routed(_with_sharp_boss(), **{"surface.cutter": own, "surface.ra": 3.2})
 
 
-def test_a_person_may_name_the_cutters():
-    chosen = routed(hilly(), **{"surface.cutter": "AL2-ball D10 R5", "surface.ra": 3.2})
+def test_no_larger_cutter_goes_before_one_that_a_person_names(with_named_cutter):
+    own, chosen = with_named_cutter
+    assert chosen.process.operation("finish-remaining").cutter.name == own
+
+
+def test_a_person_may_name_the_cutters(with_named_cutter):
+    own, chosen = with_named_cutter
     finish = chosen.process.operation("finish-remaining")
-    assert finish.tool.name == "AL2-ball D10 R5"
+    assert finish.tool.name == own
     assert finish.choices[SCALLOP] == pytest.approx(0.008)
 
 
