@@ -144,6 +144,7 @@ class ClearedArea:
         least: float,
         wider: float = 0.0,
         side: float = 1.0,
+        cuts: bool = True,
     ) -> tuple[Floats, int]:
         """Return what `march_engaged` does: positions (k, 4) and why it ended. A cutter that is `wider` than the true one doesn't cut."""
         path = np.empty((max(int(longest / step), 2), 4))
@@ -157,7 +158,7 @@ class ClearedArea:
             self.fan,
             self.thin,
             side,
-            wider == 0.0,
+            cuts and wider == 0.0,
             angle,
             least,
             step,
@@ -217,6 +218,16 @@ class ClearedArea:
                 self.thin,
             )
         )
+
+    def held(self, points: Floats) -> Floats:
+        """Return points (k, 2), those outside the axis region moved to its rim: at sharp corners of the part the grid blurs it."""
+        outside = np.flatnonzero(self.axis_region.signed_distance(points) < 0.0)
+        held = points.copy()
+        for row in outside:
+            curves = self.axis_region.curves()
+            rim = min(curves, key=lambda c: float(c.distance(points[row])[0]))
+            held[row] = rim.at(rim.nearest(points[row]))[0]
+        return held
 
     def deepest(self, positions: Floats) -> tuple[Floats, float]:
         """Return the one of positions (k, 2), of every so many of them, that is deepest in the axis region, and how deep it is: exactly,

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.geometry.arrays import Floats
+from trunnion.geometry.arrays import Floats, Ints
 from trunnion.plan.cutting.milling import FILM
 from trunnion.progress import Progress
 from trunnion.toolpath.constant_engagement.cleared_area import ClearedArea, Remaining
@@ -122,17 +122,29 @@ class _Laying:
         radius = self._area.radius
         while True:
             self._progress.check()
+            straight = centre is None and self._comes_straight(start, idle * radius)
             path, _ = self._march(start, idle * radius)
             met = np.flatnonzero(path[:, 3] > self._least)
             if not len(met):
                 return
-            first = max(int(met[0]) - round(RUN_IN / STEP), 0)
+            first = _first_of(met)
             last = min(int(met[-1]) + 1 + round(RUN_OUT / STEP), len(path) - 1)
-            self._add(path[first : last + 1], centre)
+            self._add(path[first : last + 1], centre, straight)
             self._ends = [path[last, :3]]
             start, centre, idle = path[first, :3], None, IDLE_BEFORE
 
-    def _march(self, start: Floats, idle: float) -> tuple[Floats, int]:
+    def _comes_straight(self, start: Floats, idle: float) -> bool:
+        """Return whether the cutter comes straight from the last pass to where a march from a start begins to count, before that is cut."""
+        if not self._passes:
+            return False
+        path, _ = self._march(start, idle, cuts=False)
+        met = np.flatnonzero(path[:, 3] > self._least)
+        return bool(len(met)) and self._area.line_is_free(
+            self._passes[-1].points[-1], path[_first_of(met), :2]
+        )
+
+    def _march(self, start: Floats, idle: float, *, cuts: bool = True) -> tuple[Floats, int]:
+        """Return a march at the angle; one that doesn't cut ends a radius behind the first material at the latest."""
         radius = self._area.radius
         return self._area.march(
             start,
@@ -141,21 +153,19 @@ class _Laying:
             turn=STEP / RIGHT_TURN,
             idle_before=idle,
             idle_after=IDLE_AFTER * radius,
-            longest=self._longest(),
+            longest=self._longest() if cuts else idle + radius,
             least=self._least,
+            cuts=cuts,
         )
 
-    def _add(self, path: Floats, centre: Floats | None) -> None:
-        before = self._passes[-1].points[-1] if self._passes else None
+    def _add(self, path: Floats, centre: Floats | None, straight: bool) -> None:
         self._passes.append(
             EngagedPass(
-                points=path[:, :2],
+                points=self._area.held(path[:, :2]),
                 heading=path[:, 2],
                 engagement=path[:, 3],
                 centre=centre,
-                straight=before is not None
-                and centre is None
-                and self._area.line_is_free(before, path[0, :2]),
+                straight=straight,
             )
         )
 
@@ -232,3 +242,8 @@ class _Laying:
     def _key(self, position: Floats) -> tuple[int, int]:
         node = np.rint((position[:2] - self._area.corner) / self._area.radius)
         return int(node[0]), int(node[1])
+
+
+def _first_of(met: Ints) -> int:
+    """Return where on a march a pass begins that meets material at rows (k,)."""
+    return max(int(met[0]) - round(RUN_IN / STEP), 0)
