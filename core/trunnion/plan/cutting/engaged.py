@@ -23,7 +23,7 @@ CONSTANT_ENGAGEMENT, CONTOUR_PARALLEL = "constant-engagement", "contour-parallel
 """How a layer is cleared."""
 
 BY_TIME = "by-time"
-"""Each place of a layer in the quicker of both."""
+"""Each layer in the quicker of both."""
 
 ENGAGED = (CONSTANT_ENGAGEMENT, BY_TIME)
 """Patterns whose cutting data are for constant engagement."""

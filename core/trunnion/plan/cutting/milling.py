@@ -136,14 +136,6 @@ def chip_thinning(diameter: float, width: float) -> float:
     return diameter / (2.0 * math.sqrt(width * (diameter - width)))
 
 
-def _chip_share(tool: Tool, width: float) -> float:
-    """Return the thickest chip of a cut of a width (mm) over the feed per tooth: the sine of the angle of contact, 1 from half the diameter
-    on."""
-    if width >= tool.radius:
-        return 1.0
-    return math.sin(math.acos(1.0 - width / tool.radius))
-
-
 def slenderness(tool: Tool, settings: CuttingSettings) -> float:
     """Return the share of feed and depth that a stickout leaves: 1 up to `slender` diameters, falling straight to `slender_share`."""
     excess = (tool.stickout / tool.diameter - settings.slender) / (1.5 * settings.slender)
@@ -271,5 +263,7 @@ def cutting_data(
         # Finishing enters thin skins: there a ramp takes no time, and would be the largest removal of the operation.
         ramp_share=settings.ramp_share if kind in ROUGHING else 0.0,
         fastest_link=fastest,
-        link_share=_chip_share(tool, width) / _chip_share(tool, FILM * tool.radius),
+        # Chips off a film are then as thick as those of the cut.
+        link_share=chip_thinning(tool.diameter, FILM * tool.radius)
+        / chip_thinning(tool.diameter, width),
     )

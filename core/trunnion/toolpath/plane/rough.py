@@ -15,7 +15,7 @@ from trunnion.plan.cutting.engaged import BY_TIME, CONSTANT_ENGAGEMENT, CONTOUR_
 from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive, foot_clearance
 from trunnion.progress import Progress
 from trunnion.settings import setting, settings
-from trunnion.toolpath.constant_engagement.clearing import EngagedClearing
+from trunnion.toolpath.constant_engagement.clearing import RIM, EngagedClearing
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
@@ -35,9 +35,6 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
-
-RIM = 3.0
-"""Cells at the rim of an area that a wall may keep high though everything is cut."""
 
 RIDGE = 0.3
 """mm: highest ridge between passes of a cutter with a rounded end; the next layer or the floor's finish takes it away."""
@@ -61,7 +58,7 @@ class RoughSettings:
         choices=(BY_TIME, CONSTANT_ENGAGEMENT, CONTOUR_PARALLEL),
         label="Pattern",
         help="constant-engagement: spirals and crescents that keep the angle of contact. contour-parallel: offsets of the walls, the first "
-        "one in full width. by-time: each place in the quicker one.",
+        "one in full width. by-time: each layer in the quicker one.",
     )
     ramp_angle: float = setting(
         0.0,
