@@ -180,6 +180,10 @@ def test_nothing_is_left_that_the_cutter_reaches_and_it_stays_in_its_region(seed
     assert found.left() <= 2.0 * FILM
     for one in found.passes:
         assert found.axis_region.signed_distance(one.points).min() > -0.002 * found.radius
+        if one.centre is not None:
+            helix = float(np.hypot(*(one.points[0] - one.centre)))
+            assert helix <= 0.9 * found.radius + 1e-9
+            assert found.axis_region.signed_distance(one.centre)[0] >= helix
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -223,6 +227,20 @@ def test_an_open_area_is_begun_outside_and_needs_no_helix() -> None:
     assert found.passes
     assert all(one.centre is None for one in found.passes)
     assert found.passes[0].points[0, 0] < 0.0
+
+
+def test_a_pass_begins_on_its_helix_though_it_meets_material_later() -> None:
+    """Slots of another tool stand all round the helix, too narrow for the cutter to be free in them."""
+
+    def is_material(points: Floats) -> Bools:
+        away = np.linalg.norm(points - [60.0, 40.0], axis=1)
+        return np.asarray((away < 15.0) | (away > 22.0))
+
+    found = laid(Region.rectangle(8.0, 8.0, 112.0, 72.0), 8.0, math.radians(60.0), is_material)
+    entered = [one for one in found.passes if one.centre is not None]
+    assert entered
+    for one in entered:
+        assert np.hypot(*(one.points[0] - one.centre)) == pytest.approx(0.9 * 8.0)
 
 
 def test_a_channel_is_cut_by_loops_within_the_angle() -> None:

@@ -127,7 +127,8 @@ class _Laying:
             met = np.flatnonzero(path[:, 3] > self._least)
             if not len(met):
                 return
-            first = _first_of(met)
+            # A helix ends where the march begins: its circle is as large as the first position is far from its centre.
+            first = _first_of(met) if centre is None else 0
             last = min(int(met[-1]) + 1 + round(RUN_OUT / STEP), len(path) - 1)
             self._add(path[first : last + 1], centre, straight)
             self._ends = [path[last, :3]]
