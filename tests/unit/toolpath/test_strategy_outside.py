@@ -18,6 +18,7 @@ from trunnion.toolpath.plane.profile import (
     profile_rough,
 )
 from trunnion.toolpath.plane.rib import RibTopSettings, rib_top
+from trunnion.toolpath.plane.rough import RoughSettings, rough
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 STOCK = PlanningStock.of(box_blank((-5, -5, -20), (85, 55, 2)), SETUP)
@@ -194,6 +195,27 @@ def test_a_rib_keeps_clear_of_the_walls_at_its_ends() -> None:
     )
     down = planned.path.position[planned.path.position[:, 2] < -0.5, :2]
     assert between.signed_distance(down).min() >= 6.0 - 1e-6
+
+
+def test_a_rib_is_entered_from_the_pockets_beside_it_and_not_by_a_helix() -> None:
+    between, top = rounded(0, 0, 80, 50, 6), Region.rectangle(38, 0, 42, 50)
+    cleared = STOCK
+    for low, high in ((0, 38), (42, 80)):
+        pocket = closed_pocket(rounded(low, 0, high, 50, 6), 12.0)
+        roughed = rough(
+            pocket, mill(8), cutting(12, 4), cleared, SETUP, RoughSettings(), NO_PROGRESS
+        )
+        cleared = cleared.after(roughed.path, mill(8))
+    path = rib_top(
+        rib(between, top), mill(12), cutting(6, 5), cleared, SETUP, RibTopSettings(), NO_PROGRESS
+    ).path
+    milled = Milled((0, 0), (80, 50), 0.0).cut(path, mill(12))
+    inside = top.signed_distance(milled.points).reshape(milled.x.shape) > 0.0
+    assert (milled.height[inside] == -6.0).all()
+    entries = path.mark == Mark.ENTRY
+    assert (path.motion[entries] == Motion.LINE).all()
+    assert (path.position[entries, 2] == -6.0).all()
+    assert path.feed[entries].max() <= 5.0 / 12.0 * cutting(6, 5).feed
 
 
 def test_a_rib_where_the_cutter_has_no_room_is_an_error() -> None:

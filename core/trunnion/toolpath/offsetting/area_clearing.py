@@ -46,6 +46,9 @@ RUN_OUT_DIRECTIONS = (
 )
 """Where it is looked for: along the pass's direction and to its left; straight before the start is best."""
 
+LOOKED_AT = 8
+"""Positions along a loop at which the cutter is tried to come down at or beside it."""
+
 NEXT_PASS = 2.5
 """Of the step: a position no farther away is on the neighbouring pass and may be fed to straight."""
 
@@ -160,7 +163,8 @@ def _cut_closed(
     here = builder.here
     s = loop.nearest(here[:2]) if here is not None else 0.0
     start, _ = loop.at(s)
-    # How the tool gets down: it stays down, comes down in the free, feeds across from the ring inside, or enters by `_open_up`.
+    # How the tool gets down: it stays down, comes down in the free, feeds across from the ring inside or from beside the ring, or enters
+    # by `_open_up`.
     if not _stays_down(builder, layer, start, parameters):
         free = _free_position(builder, layer, loop, s)
         if free is not None:
@@ -169,7 +173,8 @@ def _cut_closed(
         elif ring.inner:
             s = _from_inner(builder, layer, ring, loop)
         else:
-            s = _open_up(builder, layer, ring, loop, parameters)
+            entered = _enter_sideways(builder, layer, loop, parameters)
+            s = _open_up(builder, layer, ring, loop, parameters) if entered is None else entered
     builder.curve(loop.split(s, s), layer.z, feed)
 
 
@@ -177,10 +182,9 @@ def _free_position(
     builder: PathBuilder, layer: ClearingLayer, loop: Curve, first: float
 ) -> float | None:
     """Return where on a loop the cutter may come down in the free, on the shortest way that has to be fed, `first` if it is one."""
-    count = 8
     best: tuple[float, float] | None = None
-    for k in range(count):
-        s = (first + k * loop.length / count) % loop.length
+    for k in range(LOOKED_AT):
+        s = (first + k * loop.length / LOOKED_AT) % loop.length
         position = loop.at(s)[0]
         if is_free(builder, position, layer.z):
             fed = descent(builder, position, layer.z)
@@ -189,6 +193,29 @@ def _free_position(
             if fed <= builder.safety:
                 break
     return None if best is None else best[1]
+
+
+def _enter_sideways(
+    builder: PathBuilder, layer: ClearingLayer, loop: Curve, parameters: ClearingParameters
+) -> float | None:
+    """Come down in the free beside a loop and feed straight onto it, no faster than the step removes as much a minute over the whole
+    diameter; return where on the loop, None where nothing beside it is free."""
+    best: tuple[float, float, Floats] | None = None
+    for k in range(LOOKED_AT):
+        s = k * loop.length / LOOKED_AT
+        start, tangent = loop.at(s)
+        before = _beside(builder, layer, start, tangent)
+        if before is not None:
+            fed = float(np.hypot(*(before - start))) + descent(builder, before, layer.z)
+            if best is None or fed < best[0] - tolerance.SEW:
+                best = fed, s, before
+    if best is None:
+        return None
+    _, s, before = best
+    travel(builder, before, layer.z, layer.axis_region)
+    share = parameters.slot * min(parameters.step / builder.tool.diameter, 1.0)
+    builder.line((*loop.at(s)[0], layer.z), builder.data.feed * share, Mark.ENTRY)
+    return s
 
 
 def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: OffsetRing, loop: Curve) -> float:
@@ -291,7 +318,7 @@ def _come_to(
 def _beside(
     builder: PathBuilder, layer: ClearingLayer, start: Floats, tangent: Floats
 ) -> Floats | None:
-    """Return the free position at or near the start of an open pass from which the way that has to be fed, down and to the start, is
+    """Return the free position at or near the start of a pass from which the way that has to be fed, down and to the start, is
     shortest; None where none is free."""
     left = np.array([-tangent[1], tangent[0]])
     best: tuple[float, Floats] | None = None
