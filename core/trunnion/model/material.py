@@ -37,8 +37,9 @@ class Material:
     `depth_factor` ap over D and `width_factor` ae over D for roughing, `slot_factor` ap over D up to which a cutter may be fed through a
     slot, at the feed that the spindle bears there (0: as `depth_factor`); `layer_width_factor` ae over D in layers that such slots open
     (0: as `width_factor`); `engaged_depth_factor` ap over D and `engaged_width_factor` ae over D at constant engagement (0: as
-    `depth_factor` and `width_factor`); `entry_angle` degrees that helices and ramps into full material go down at (0: nothing is known of
-    it); `density` kg/dm3. `speed_range` vc m/min, the smallest and the largest speed that cutters bear, and `life`: None where the
+    `depth_factor` and `width_factor`), `shallow_width_factor` ae over D up to which it may be wider there in pockets that are not so deep,
+    at the same section ap ae (0: no wider); `entry_angle` degrees that helices and ramps into full material go down at (0: nothing is known
+    of it); `density` kg/dm3. `speed_range` vc m/min, the smallest and the largest speed that cutters bear, and `life`: None where the
     catalogue has none. `feed_share` says where between smallest and largest the tables' fz lies, `feed_range` between which such shares
     another may be chosen.
     """
@@ -64,6 +65,7 @@ class Material:
     entry_angle: float = 0.0
     engaged_depth_factor: float = 0.0
     engaged_width_factor: float = 0.0
+    shallow_width_factor: float = 0.0
 
     @property
     def deepest_factor(self) -> float:

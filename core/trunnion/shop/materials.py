@@ -81,6 +81,9 @@ def _material(entry: CatalogueEntry) -> Material:
         engaged_width_factor=value("engaged_width_factor", 0.01, 1.0)
         if entry.has("engaged_width_factor")
         else 0.0,
+        shallow_width_factor=value("shallow_width_factor", 0.01, 1.0)
+        if entry.has("shallow_width_factor")
+        else 0.0,
         speed_range=_speed_range(sourced("speed_range")) if entry.has("speed_range") else None,
         life=_life(sourced("tool_life")) if entry.has("tool_life") else None,
         source="; ".join(f"{name}: {words}" for name, words in sources.items()),

@@ -12,6 +12,12 @@ from flat_parts import operation
 from trunnion.geometry.frame import WORLD
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
+from trunnion.plan.cutting.engaged import (
+    CONSTANT_ENGAGEMENT,
+    engaged_depth,
+    engaged_width,
+    roughing_choice,
+)
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
     chip_thinning,
@@ -117,6 +123,28 @@ def test_layers_that_slots_open_are_deeper_where_the_material_says_so():
     assert roughing_depth(cutter, ALUMINIUM, DEFAULT) == approx(12.0)
     titanium = SHOP.material("Ti-6Al-4V")
     assert layer_depth(cutter, titanium, DEFAULT) == roughing_depth(cutter, titanium, DEFAULT)
+
+
+def test_at_constant_engagement_a_shallower_cut_is_wider_at_the_same_section():
+    cutter = tool("AL3-regular D20 R0")
+    # Two diameters, of which its flutes are 38 mm long, at 0.3 diameters.
+    assert engaged_depth(cutter, ALUMINIUM, DEFAULT) == approx(38.0)
+    for depth in (38.0, 35.0, 25.0):
+        assert engaged_width(cutter, ALUMINIUM, DEFAULT, depth) * depth == approx(40.0 * 6.0)
+    # No wider than half the diameter, where every tooth still climbs.
+    assert engaged_width(cutter, ALUMINIUM, DEFAULT, 10.0) == approx(10.0)
+    titanium = SHOP.material("Ti-6Al-4V")
+    for depth in (40.0, 10.0):
+        assert engaged_width(cutter, titanium, DEFAULT, depth) == approx(2.0)
+
+
+def test_balance_keeps_a_wide_shallow_cut_at_constant_engagement():
+    cutter = tool("AL3-regular D20 R0")
+    chosen = roughing_choice(cutter, ALUMINIUM, MACHINE, DEFAULT, 25.0, CONSTANT_ENGAGEMENT)
+    tree = process("rough")
+    tree = replace(tree, operations=(replace(tree.operations[0], data=chosen.data),))
+    found = balance(tree, SHOP, DEFAULT, TABLES).operations[0].data
+    assert (found.depth, found.width) == (approx(25.0), approx(9.6))
 
 
 def test_balance_keeps_deep_layers_and_bounds_them_by_a_persons_share():

@@ -44,14 +44,23 @@ class RoughingChoice:
 
 def engaged_depth(tool: Tool, material: Material, settings: CuttingSettings) -> float:
     """Return the depth of cut in mm that a cutter bears at constant engagement: its flank is used."""
+    return min(_deepest(tool, material, settings), tool.flute_length)
+
+
+def engaged_width(tool: Tool, material: Material, settings: CuttingSettings, depth: float) -> float:
+    """Return the width of cut in mm at constant engagement in a depth of cut (mm).
+
+    Less deep it may be wider: a section ap ae bends the cutter the same, as far as the material bears the larger angle of contact.
+    """
+    width = min(material.widest_engaged_factor * settings.width_share, 1.0) * tool.diameter
+    widest = min(material.shallow_width_factor * settings.width_share, 1.0) * tool.diameter
+    section = width * _deepest(tool, material, settings)
+    return max(width, min(section / depth, widest))
+
+
+def _deepest(tool: Tool, material: Material, settings: CuttingSettings) -> float:
     factor = material.deepest_engaged_factor
-    bears = factor * settings.depth_share * slenderness(tool, settings) * tool.diameter
-    return min(bears, tool.flute_length)
-
-
-def engaged_width(tool: Tool, material: Material, settings: CuttingSettings) -> float:
-    """Return the width of cut in mm at constant engagement."""
-    return min(material.widest_engaged_factor * settings.width_share, 1.0) * tool.diameter
+    return factor * settings.depth_share * slenderness(tool, settings) * tool.diameter
 
 
 def engaged_data(
@@ -89,14 +98,9 @@ def roughing_choice(
 
     A layer's time goes with the width of cut times the feed, and there are as many as the depth of cut asks for.
     """
-    engaged = engaged_data(
-        tool,
-        material,
-        machine,
-        settings,
-        even_depth(height, engaged_depth(tool, material, settings)),
-        engaged_width(tool, material, settings),
-    )
+    deep = even_depth(height, engaged_depth(tool, material, settings))
+    wide = engaged_width(tool, material, settings, deep)
+    engaged = engaged_data(tool, material, machine, settings, deep, wide)
     parallel = cutting_data(
         tool,
         material,

@@ -219,7 +219,7 @@ def _bears_width(
     """Return the width (mm) that an operation bears under some limits, as `_bears` its depth."""
     tool = operation.cutter
     if operation.data.is_engaged:
-        return engaged_width(tool, material, settings)
+        return engaged_width(tool, material, settings, operation.data.depth)
     if width > roughing_width(tool, material, choose(CuttingSettings, {})) * (
         1.0 + tolerance.PARAMETRIC
     ):
