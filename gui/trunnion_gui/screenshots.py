@@ -32,7 +32,7 @@ def opened(
     *,
     size: tuple[int, int] = (1600, 1000),
     factory: str = "",
-    until: str = "verify",
+    until: str = "repair",
     theme: str = "light",
     timeout_s: float = 300.0,
 ) -> Iterator[Window]:
@@ -89,11 +89,11 @@ def shoot_all(folder: str | Path) -> tuple[Path, ...]:
     wanted: tuple[tuple[str, str, dict[str, Prepare]], ...] = (
         ("route", "light", {"features": _show_feature}),
         (
-            "verify",
+            "repair",
             "light",
             {"window": _show_operation, "playback": _show_playback, "deviation": _show_deviation},
         ),
-        ("verify", "dark", {"window-dark": _show_operation}),
+        ("repair", "dark", {"window-dark": _show_operation}),
     )
     made = []
     with as_file(trunnion_resources.sample("B1")) as part:

@@ -554,6 +554,10 @@ class FakeEngine:
                 time_s=95.0,
                 removed=2e4,
                 air_share=0.1,
+                cutting_s=70.0,
+                air_s=10.0,
+                rapid_s=9.0,
+                bound_s=50.0,
             )
             for o in session.process.operations
         )
@@ -565,6 +569,7 @@ class FakeEngine:
             collisions=0,
             rapids_in_stock=0,
             machining_time_s=754.0,
+            bound_s=500.0,
             operations=proofs,
             deviation=measured(self._mesh, self._features),
         )

@@ -623,3 +623,16 @@ def test_operations_that_differ_at_their_ends_are_told_apart_in_the_panel(progra
     }
     assert len(shown) == 3
     assert "mm/min" in table.horizontalHeaderItem(2).toolTip()
+
+
+def test_the_process_tree_shows_times_beside_their_bounds_once_they_are_proven(programmed):
+    tree, verdict = programmed.docks.process.tree, programmed.document.shown.verdict
+    titles = {tree.headerItem().text(n): n for n in range(tree.columnCount())}
+    assert tree.isColumnHidden(titles["⌀ mm"]) and not tree.isColumnHidden(titles["Time"])
+    proof = verdict.operations[0]
+    item = programmed.docks.process.item(proof.operation)
+    assert item.text(titles["Time"]) == "1:35"
+    assert item.text(titles["×"]) == f"{proof.over_bound:.1f}"
+    panel = programmed.panels["generate"]
+    assert not panel.minutes.isHidden()
+    assert panel.minutes.bar.shares == verdict.time_shares()

@@ -16,6 +16,10 @@ Smalls: TypeAlias = npt.NDArray[np.float32]
 Small: TypeAlias = npt.NDArray[np.int32]
 
 
+CUTTING, AIR, RAPIDS, IDLE = "cutting", "air", "rapids", "tool changes"
+"""Where machining time goes."""
+
+
 class Outcome(StrEnum):
     """Passed; passed with remarks (released too); failed (never released)."""
 
@@ -51,6 +55,9 @@ class OperationProof:
     over the width that is engaged, mm.
     rate, rate_mean: removal rate, cm3/min; power kW and torque Nm at the cutter, largest, and power_limit, what the spindle gives at its
     speed; chip: thickest chip, mm.
+    cutting_s, air_s, rapid_s: what of time_s is feed in stock, feed outside of it, and rapids; the rest is tool changes and dwells.
+    served: area of the samples that it came nearest to, mm2. bound_s: what it takes at least (`plan.cutting.time_bound`), 0 where that was
+    not asked for.
     """
 
     operation: str
@@ -75,6 +82,30 @@ class OperationProof:
     power_limit: float = 0.0
     torque: float = 0.0
     chip: float = 0.0
+    cutting_s: float = 0.0
+    air_s: float = 0.0
+    rapid_s: float = 0.0
+    served: float = 0.0
+    bound_s: float = 0.0
+
+    @property
+    def idle_s(self) -> float:
+        """Time of its tool change and dwells, s."""
+        return max(self.time_s - self.cutting_s - self.air_s - self.rapid_s, 0.0)
+
+    @property
+    def over_bound(self) -> float:
+        """Its time over the bound of it; 0 where the bound isn't known."""
+        return self.time_s / self.bound_s if self.bound_s > 0.0 else 0.0
+
+    def time_parts(self) -> tuple[tuple[str, float], ...]:
+        """Return the seconds that the tool cuts, feeds through air, goes by rapids, and stands for a tool change or dwells."""
+        return (
+            (CUTTING, self.cutting_s),
+            (AIR, self.air_s),
+            (RAPIDS, self.rapid_s),
+            (IDLE, self.idle_s),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,7 +163,7 @@ NO_DEVIATION = Deviation(face=np.zeros(0, int), point=np.zeros((0, 3)), deviatio
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Verdict:
     """The proof of a whole plan. `coverage` finished area over area to be machined; `reachable` the same over what any catalogue cutter
-    reaches."""
+    reaches; `bound_s` s that the operations, one change to each tool and the shortest rapids take at least (0: not asked for)."""
 
     outcome: Outcome
     coverage: float
@@ -148,6 +179,20 @@ class Verdict:
     blocks: tuple[BlockProof, ...] = ()
     offers: tuple[Offer, ...] = ()
     accepted_by: str = ""
+    bound_s: float = 0.0
+
+    @property
+    def over_bound(self) -> float:
+        """Machining time over its bound; 0 where the bound isn't known."""
+        return self.machining_time_s / self.bound_s if self.bound_s > 0.0 else 0.0
+
+    def time_shares(self) -> tuple[tuple[str, float], ...]:
+        """Return the shares of the machining time that the parts of the operations' times take together."""
+        whole = sum(o.time_s for o in self.operations)
+        parts = zip(*(o.time_parts() for o in self.operations), strict=True)
+        return tuple(
+            (part[0][0], sum(s for _, s in part) / whole if whole > 0.0 else 0.0) for part in parts
+        )
 
     @property
     def releases(self) -> bool:

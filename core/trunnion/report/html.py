@@ -13,6 +13,7 @@ from trunnion.model.session import Session
 from trunnion.model.spindle import FeedMode, SpindleMode
 from trunnion.plan.freeform.estimate.finishing_time import Estimate
 from trunnion.plan.setups.flip import TURNED_OVER, turn_words
+from trunnion.report.palette import load_palette
 from trunnion.report.pictures import Picture
 from trunnion.shop.crib import PlanTool, tools_listed
 from trunnion.units import degrees, timed
@@ -46,13 +47,18 @@ def report_html(
         (p.caption, base64.b64encode((folder / p.file).read_bytes()).decode("ascii"))
         for p in pictures
     ]
-    proofs = {p.operation: p for p in session.verdict.operations} if session.verdict else {}
+    verdict = session.verdict
+    proofs = {p.operation: p for p in verdict.operations} if verdict else {}
     return page.render(
         name=name,
         date=date,
         session=session,
         pictures=shown,
         proofs=proofs,
+        longest=max((p.time_s for p in proofs.values()), default=0.0),
+        time_colours={
+            k: "#{:02x}{:02x}{:02x}".format(*c) for k, c in load_palette().machine_time.items()
+        },
         laid={p.operation: p.power for p in session.paths},
         duration=duration,
         share=share,

@@ -72,7 +72,7 @@ class ClassColours:
 
 @dataclass(frozen=True, kw_only=True)
 class Palette:
-    """Colours of features by the kinds that families declare, of radii, of motions and of deviations.
+    """Colours of features by the kinds that families declare, of radii, motions, parts of machining time and deviations.
 
     `other` is that of features whose kind no registered family declares, `unexplained` that of faces in no feature; `backgrounds` are
     what features are drawn on, `selections` what is selected is drawn in.
@@ -83,6 +83,7 @@ class Palette:
     unexplained: Colour
     radius: RadiusColours
     motions: dict[str, Colour]
+    machine_time: dict[str, Colour]
     deviation: DeviationColours
     backgrounds: tuple[Colour, ...] = ()
     selections: tuple[Colour, ...] = ()
@@ -134,9 +135,9 @@ class Palette:
 def load_palette() -> Palette:
     """Return the shipped colours with those that families declare; raise `BadInput` when a colour is not written as `#rrggbb`."""
     data = tomllib.loads((folder("palette") / "palette.toml").read_text(encoding="utf-8"))
-    motions, features = (
+    motions, features, machine_time = (
         {name: rgb(name, text) for name, text in data[table].items()}
-        for table in ("motions", "features")
+        for table in ("motions", "features", "machine_time")
     )
     radius = RadiusColours(
         limits=tuple(data["radius"]["limits"]),
@@ -148,6 +149,7 @@ def load_palette() -> Palette:
         unexplained=features[UNEXPLAINED],
         radius=radius,
         motions=motions,
+        machine_time=machine_time,
         deviation=_deviation(data["deviation"]),
         backgrounds=(PAPER, *_of_themes("view_top", "view_bottom")),
         selections=_of_themes("selection"),

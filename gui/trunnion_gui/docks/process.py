@@ -8,6 +8,7 @@ from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QBrush, QColor, QDropEvent, QFont, QIcon
 from PySide6.QtWidgets import (
     QAbstractItemView,
+    QHeaderView,
     QMenu,
     QTreeWidget,
     QTreeWidgetItem,
@@ -16,18 +17,18 @@ from PySide6.QtWidgets import (
 )
 
 from trunnion.model.operation import Operation
-from trunnion.model.session import Session
-from trunnion.model.verdict import Outcome
+from trunnion.model.verdict import OperationProof, Outcome
 from trunnion.plan.manual.operation_copy import copy_targets
 from trunnion_gui import edits
 from trunnion_gui.document import Document, Selection
 from trunnion_gui.i18n import tr
 from trunnion_gui.look import icons
 from trunnion_gui.look.colours import Theme
-from trunnion_gui.look.words import amount, kind_words, sentence
+from trunnion_gui.look.words import amount, clock, kind_words, sentence
 from trunnion_gui.widgets.table import RIGHT, select_row, tree
 
 _ID = Qt.ItemDataRole.UserRole
+_FEATURE, _DIAMETER, _TIME, _OVER = 1, 3, 4, 5
 
 
 class _Tree(QTreeWidget):
@@ -62,7 +63,14 @@ class ProcessDock(QWidget):
         self._shown: tuple = ()
         self._items: dict[str, QTreeWidgetItem] = {}
         self._marked = ""
-        self.tree = tree([tr("Operation"), tr("Feature"), tr("Tool"), "⌀ mm"], kind=_Tree)
+        titles = [tr("Operation"), tr("Feature"), tr("Tool"), "⌀ mm", tr("Time"), "×"]
+        self.tree = tree(titles, kind=_Tree)
+        self.tree.header().setSectionResizeMode(_FEATURE, QHeaderView.ResizeMode.Stretch)
+        self.tree.headerItem().setToolTip(
+            _OVER, tr("Time over the least that spindle, cutter and material allow")
+        )
+        for number in (_TIME, _OVER):
+            self.tree.headerItem().setTextAlignment(number, RIGHT)
         self.tree.setDragDropMode(QAbstractItemView.DragDropMode.InternalMove)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -88,8 +96,12 @@ class ProcessDock(QWidget):
         self.tree.blockSignals(True)
         self.tree.clear()
         self._items = {}
+        proofs = {p.operation: p for p in session.verdict.operations} if session.verdict else {}
+        self.tree.setColumnHidden(_DIAMETER, bool(proofs))
+        for column in (_TIME, _OVER):
+            self.tree.setColumnHidden(column, not proofs)
         for setup in session.process.setups if session.process else ():
-            top = QTreeWidgetItem([f"{setup.name}  {setup.work_offset}", setup.machine, "", ""])
+            top = QTreeWidgetItem([f"{setup.name}  {setup.work_offset}", setup.machine])
             top.setIcon(0, icons.icon("setup"))
             top.setFlags(
                 top.flags() & ~(Qt.ItemFlag.ItemIsSelectable | Qt.ItemFlag.ItemIsDragEnabled)
@@ -97,7 +109,7 @@ class ProcessDock(QWidget):
             self.tree.addTopLevelItem(top)
             for o in session.process.operations if session.process else ():
                 if o.setup == setup.name:
-                    self._add(top, o, session)
+                    self._add(top, o, proofs.get(o.id))
             top.setExpanded(True)
         self.tree.blockSignals(False)
         marked, self._marked = self._marked, ""
@@ -167,29 +179,32 @@ class ProcessDock(QWidget):
             for id in features:
                 onto.addAction(id, partial(self._document.copy_operation, operation.id, id))
 
-    def _add(self, top: QTreeWidgetItem, o: Operation, session: Session) -> None:
+    def _add(self, top: QTreeWidgetItem, o: Operation, proof: OperationProof | None) -> None:
         item = QTreeWidgetItem(
-            [label(o), o.feature, f"T{o.tool.number}", amount(o.tool.cutter_sizes[0], 2)]
+            [
+                label(o),
+                o.feature,
+                f"T{o.tool.number}",
+                amount(o.tool.cutter_sizes[0], 2),
+                clock(proof.time_s) if proof is not None else "",
+                f"{proof.over_bound:.1f}" if proof is not None and proof.bound_s else "",
+            ]
         )
         item.setData(0, _ID, o.id)
-        item.setTextAlignment(3, RIGHT)
+        for column in (_DIAMETER, _TIME, _OVER):
+            item.setTextAlignment(column, RIGHT)
         item.setToolTip(0, "<br>".join((f"<b>{o.id}</b>", *o.rules)))
         item.setToolTip(2, o.tool.description or o.tool.name)
-        item.setIcon(0, self._icon(o, session))
+        item.setIcon(0, self._icon(o, proof))
         if o.suppressed and self._theme is not None:
-            for column in range(4):
+            for column in range(self.tree.columnCount()):
                 item.setForeground(column, QColor(self._theme.muted))
         top.addChild(item)
         self._items[o.id] = item
 
-    def _icon(self, o: Operation, session: Session) -> QIcon:
+    def _icon(self, o: Operation, proof: OperationProof | None) -> QIcon:
         if o.suppressed:
             return icons.icon("suppress")
-        proof = (
-            next((p for p in session.verdict.operations if p.operation == o.id), None)
-            if session.verdict
-            else None
-        )
         if proof is None or self._theme is None:
             return icons.icon("by_hand" if o.is_manual else "empty")
         colours = {

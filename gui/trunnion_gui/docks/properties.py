@@ -19,7 +19,14 @@ from trunnion_gui.families.views import Views
 from trunnion_gui.form import Form
 from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import kind_label
-from trunnion_gui.look.words import amount, duration, kind_words, sentence, size_unit
+from trunnion_gui.look.words import (
+    amount,
+    duration,
+    kind_words,
+    over_bound,
+    sentence,
+    size_unit,
+)
 from trunnion_gui.widgets import table as tables
 from trunnion_gui.worker.requests import OPERATION
 
@@ -208,6 +215,7 @@ class PropertiesDock(QScrollArea):
             rows += [
                 (tr("Verdict"), tr(proof.outcome.value)),
                 (tr("Time"), duration(proof.time_s)),
+                (tr("Time over its bound"), over_bound(proof.over_bound)),
                 (tr("Deepest gouge"), f"{amount(proof.gouge)} mm"),
             ]
         return rows

@@ -91,6 +91,11 @@ def motions() -> dict[str, str]:
     return {name: colour for name, colour in _palette()["motions"].items() if name in MOTIONS}
 
 
+def machine_time() -> dict[str, str]:
+    """Return the colour of every part of machining time."""
+    return _palette()["machine_time"]
+
+
 def axis_colour() -> str:
     """Return the colour of the strokes that show how a leaning tool stands."""
     return _palette()["motions"][AXIS]

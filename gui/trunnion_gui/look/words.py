@@ -58,6 +58,15 @@ def counted(number: int, kind: str) -> str:
     )
 
 
+def over_bound(times: float) -> str:
+    """Return how many times its bound a time is; a dash where that isn't known.
+
+    >>> over_bound(1.8125), over_bound(0.0)
+    ('1.81 ×', '–')
+    """
+    return f"{times:.2f} ×" if times > 0.0 else "–"
+
+
 def duration(seconds: float) -> str:
     """Return a time as short as it can be read.
 

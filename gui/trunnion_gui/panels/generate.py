@@ -10,9 +10,10 @@ from trunnion.model.verdict import Outcome
 from trunnion.post.header import REJECTED
 from trunnion_gui.i18n import tr
 from trunnion_gui.look.colours import motions
-from trunnion_gui.look.words import amount, duration, share
+from trunnion_gui.look.words import amount, duration, over_bound, share
 from trunnion_gui.widgets.layout import empty
 from trunnion_gui.widgets.panel import Panel, rule, swatch
+from trunnion_gui.widgets.time_bar import TimeBar
 
 VERDICTS = {Outcome.PASSED: "good", Outcome.REMARKS: "warning", Outcome.FAILED: "bad"}
 
@@ -41,6 +42,8 @@ class GeneratePanel(Panel):
         self._numbers.setVerticalSpacing(2)
         self._numbers.setColumnStretch(0, 1)
         self.content.addLayout(self._numbers)
+        self.minutes = TimeBar()
+        self.content.addWidget(self.minutes)
         self.content.addWidget(rule())
         self.content.addWidget(self._motions())
         self.content.addWidget(self.button("file.write"))
@@ -50,6 +53,7 @@ class GeneratePanel(Panel):
         empty(self._numbers)
         self.verdict.setVisible(verdict is not None)
         self._name_rejected()
+        self.minutes.show_shares(verdict.time_shares() if verdict is not None else ())
         if verdict is None:
             return
         self.verdict.setText(tr("Verdict: {outcome}").format(outcome=tr(verdict.outcome.value)))
@@ -64,6 +68,7 @@ class GeneratePanel(Panel):
                 (tr("Collisions"), str(verdict.collisions)),
                 (tr("Rapids in stock"), str(verdict.rapids_in_stock)),
                 (tr("Machining time"), duration(verdict.machining_time_s)),
+                (tr("Time over its bound"), over_bound(verdict.over_bound)),
             )
         ):
             label, number = QLabel(words), QLabel(value)

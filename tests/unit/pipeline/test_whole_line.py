@@ -65,6 +65,15 @@ def test_every_operation_of_b1_passes(line):
     assert {p.outcome for p in line[1].verdict.operations} == {Outcome.PASSED}
 
 
+def test_the_bound_stands_beside_every_time(line):
+    verdict = line[1].verdict
+    for o in verdict.operations:
+        assert 0.0 < o.bound_s <= o.time_s, o.operation
+        assert sum(seconds for _, seconds in o.time_parts()) == pytest.approx(o.time_s)
+    assert sum(o.bound_s for o in verdict.operations) < verdict.bound_s < verdict.machining_time_s
+    assert sum(share for _, share in verdict.time_shares()) == pytest.approx(1.0)
+
+
 def test_everything_is_written(line):
     names = {path.name for path in line[2].iterdir()}
     assert names == {
@@ -274,6 +283,8 @@ def test_the_command_line_prints_the_documented_keys(commanded):
         "collisions",
         "rapids_in_stock",
         "machining_time_s",
+        "bound_s",
+        "over_bound",
         "seconds",
         "setups",
         "operations",
@@ -298,6 +309,11 @@ def test_the_command_line_prints_the_documented_keys(commanded):
         "power_limit_kw",
         "torque_nm",
         "air_share",
+        "bound_s",
+        "cutting_s",
+        "air_s",
+        "rapid_s",
+        "idle_s",
     } <= said["operations"][0].keys()
     assert sorted(said["files"]) == sorted(path.name for path in folder.iterdir())
 

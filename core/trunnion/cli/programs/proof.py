@@ -36,6 +36,7 @@ def proof_dict(
                 "verdict": "not cut",
                 "gouge_mm": 0.0,
                 "time_s": 0.0,
+                "bound_s": 0.0,
                 "removed_mm3": 0.0,
                 "air_share": 0.0,
             }
@@ -59,6 +60,8 @@ def proof_dict(
         "collisions": verdict.collisions,
         "rapids_in_stock": verdict.rapids_in_stock,
         "machining_time_s": verdict.machining_time_s,
+        "bound_s": verdict.bound_s,
+        "over_bound": verdict.over_bound,
         "seconds": dict(seconds),
         "setups": [
             {
@@ -97,6 +100,11 @@ def operation_dict(p: OperationProof) -> dict[str, Any]:
         "collisions": p.collisions,
         "rapids_in_stock": p.rapids_in_stock,
         "time_s": p.time_s,
+        "bound_s": p.bound_s,
+        "cutting_s": p.cutting_s,
+        "air_s": p.air_s,
+        "rapid_s": p.rapid_s,
+        "idle_s": p.idle_s,
         "removed_mm3": p.removed,
         "air_share": p.air_share,
         "left_mm": {"min": p.left_min, "mean": p.left_mean, "max": p.left_max},
@@ -128,6 +136,7 @@ def proof_text(session: Session) -> str:
     v = session.verdict
     assert v is not None
     minutes, seconds = divmod(round(v.machining_time_s), 60)
+    bound = f", {v.over_bound:.2f} times its bound" if v.bound_s > 0.0 else ""
     return "\n".join(
         [
             f"verdict            {v.outcome}",
@@ -135,7 +144,8 @@ def proof_text(session: Session) -> str:
             f"greatest gouge     {v.gouge:.4f} mm",
             f"collisions         {v.collisions}",
             f"rapids in stock    {v.rapids_in_stock}",
-            f"time at the machine {minutes} min {seconds:02d} s in {len(v.operations)} operations",
+            f"time at the machine {minutes} min {seconds:02d} s in {len(v.operations)} operations{bound}",
+            f"of that             {', '.join(f'{100 * share:.0f} % {name}' for name, share in v.time_shares())}",
         ]
     )
 

@@ -9,7 +9,6 @@ from trunnion.findings import BadCall
 from trunnion.model.operation import CuttingData
 from trunnion.model.session import Session
 from trunnion.pipeline.context import Context
-from trunnion.plan.cutting.optimization.bound import removal_bound
 from trunnion.plan.cutting.optimization.genetic import (
     FrontPoint,
     pareto_front,
@@ -19,6 +18,7 @@ from trunnion.plan.cutting.optimization.operation import OptimizationSettings, b
 from trunnion.plan.cutting.optimization.problem import CuttingProblem
 from trunnion.plan.cutting.optimization.settings import OPTIMISED
 from trunnion.plan.cutting.optimize import Choice, choices_of
+from trunnion.plan.cutting.time_bound import highest_rates
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import SECONDS_PER_MINUTE
 
@@ -102,7 +102,7 @@ def comparisons(
             data = operation.data
             key = operation.cutter, machine.name, operation.kind, data.width, data.depth, own
             if key not in known:
-                known[key] = removal_bound(operation, material, machine, own)
+                known[key] = highest_rates(operation, material, machine, own).removal
             bound = known[key]
         found.append(_compared(choice, bound, session))
     return tuple(found)

@@ -19,6 +19,7 @@ from trunnion.model.setup import Setup
 from trunnion.model.tabs import PlannedTab, Tab, tabs_of
 from trunnion.model.verdict import Outcome, Verdict
 from trunnion.pipeline.context import Context
+from trunnion.pipeline.proof.time_bound import with_bounds
 from trunnion.pipeline.work_position import work_positions_of
 from trunnion.plan import setups
 from trunnion.plan.allowances import face_allowances
@@ -280,7 +281,10 @@ def prove_programs(
         tabs=planned_tabs(session.process),
         allowances=face_allowances(session.recognition, part),
     )
-    return verdict
+    return progress.aside(
+        lambda own: with_bounds(verdict, session, context, programs, own),
+        "Finding the least time of each operation",
+    )
 
 
 def planned_tabs(process: ProcessTree) -> tuple[PlannedTab, ...]:

@@ -38,7 +38,7 @@ def operation_proofs(
         failed = gouge > settings.tolerance or collides[rows].any() or rapids.any()
         new_tool = k == 0 or proof.program.sections[k - 1].tool.number != section.tool.number
         removed = float(stock.removed[rows].sum())
-        residual = proof.residual[served == k]
+        seconds, residual = proof.times.seconds, proof.residual[served == k]
         found.append(
             OperationProof(
                 operation=section.operation,
@@ -47,7 +47,7 @@ def operation_proofs(
                 gouge=gouge,
                 collisions=int(collides[rows].sum()),
                 rapids_in_stock=int(rapids.sum()),
-                time_s=float(proof.times.seconds[rows].sum())
+                time_s=float(seconds[rows].sum())
                 + section.dwell
                 + proof.machine.tool_change_s * new_tool,
                 removed=removed,
@@ -68,7 +68,7 @@ def operation_proofs(
                 rate=float(load.rate[rows].max(initial=0.0)),
                 rate_mean=_share(
                     removed / MM_PER_METRE * SECONDS_PER_MINUTE,
-                    float(proof.times.seconds[cuts].sum()),
+                    float(seconds[cuts].sum()),
                 ),
                 power=float(load.power[rows].max(initial=0.0)),
                 power_limit=power_limit(
@@ -80,6 +80,10 @@ def operation_proofs(
                 ),
                 torque=float(load.torque[rows].max(initial=0.0)),
                 chip=float(load.chip[rows].max(initial=0.0)),
+                cutting_s=float(seconds[cuts].sum()),
+                air_s=float(seconds[feeds & ~cuts].sum()),
+                rapid_s=float(seconds[rows & moves.rapid].sum()),
+                served=float(area[served == k].sum()),
             )
         )
     return found

@@ -401,6 +401,13 @@ def turned_operations(work: TurnedWork, settings: ProofSettings) -> list[Operati
                     power_limit=table.power_at(slowest) if table is not None and len(cuts) else 0.0,
                     torque=NEWTON_METRES * power / slowest if len(cuts) else 0.0,
                     chip=float(proof.chip[rows].max(initial=0.0)),
+                    cutting_s=cutting,
+                    air_s=float(
+                        proof.seconds[
+                            rows[~proof.moves.rapid[rows] & (proof.removed[rows] <= 0.0)]
+                        ].sum()
+                    ),
+                    rapid_s=float(proof.seconds[rows[proof.moves.rapid[rows]]].sum()),
                 )
             )
     return found
