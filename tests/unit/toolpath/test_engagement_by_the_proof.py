@@ -94,3 +94,29 @@ def test_the_angle_of_contact_is_kept_as_the_proof_sees_it(seed, monkeypatch):
     assert length[over].sum() <= SHARE_OVER * length[passes].sum()
     mean = (angle * removed)[passes].sum() / removed[passes].sum()
     assert LEAST_MEAN * limit <= mean <= limit + OVER
+
+
+def test_a_pocket_takes_little_more_way_than_its_volume_asks_for_and_few_blocks():
+    """A pocket of FreeCAD's example panel, cutter of 16 mm, ae 4 mm, two layers of 20 mm, helices of 5 degrees: its adaptive clearing feeds
+    1.12 of volume / (ae ap) without links, in 6,903 blocks."""
+    plan = Region.rectangle(0, 0, 110, 120).opened(8.0)
+    data = replace(
+        cutting(20.0, 4.0, feed=1200.0),
+        layer_depth=8.0,
+        layer_width=8.0,
+        entry_angle=5.0,
+        fastest_link=20_000.0,
+        link_share=50.0,
+    )
+    path = rough(
+        closed_pocket(plan, 40.0),
+        mill(16),
+        data,
+        PlanningStock.of(box_blank((-20, -20, -50), (130, 140, 0)), SETUP),
+        SETUP,
+        RoughSettings(pattern=CONSTANT_ENGAGEMENT),
+        NO_PROGRESS,
+    ).path
+    feeds = (path.motion != Motion.RAPID) & (path.mark != Mark.LINK)
+    assert path.lengths()[feeds].sum() <= 1.12 * plan.area * 40.0 / (4.0 * 20.0)
+    assert len(path) <= 6903 / 3
