@@ -30,7 +30,7 @@ from trunnion.plan.cutting.optimization.problem import CuttingProblem, Economics
 from trunnion.plan.cutting.optimization.settings import GeneticSettings
 from trunnion.plan.cutting.optimize import choices_of
 from trunnion.plan.cutting.power import cutting_power
-from trunnion.plan.cutting.time_bound import highest_rates
+from trunnion.plan.cutting.time_bound import RateSearch
 
 PAPER = example_cuts()[0]
 ALUMINIUM, TITANIUM = SHOP.material("EN AW-7075"), SHOP.material("Ti-6Al-4V")
@@ -242,7 +242,7 @@ def test_the_bound_of_roughing_is_above_what_its_data_remove():
     seed = next(s for s in range(99) if random_operation(s)[0].kind == "rough")
     made, process = choice(seed), random_operation(seed)[1]
     material, machine = SHOP.material(process.material), SHOP.machine(process.setups[0].machine)
-    bound = highest_rates(made.handbook, material, machine, OptimizationSettings.of({})).removal
+    bound = RateSearch(material).rates(made.handbook, machine, OptimizationSettings.of({})).removal
     assert bound >= made.optimised.data.removal_rate > 0.0
 
 

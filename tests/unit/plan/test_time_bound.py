@@ -11,10 +11,10 @@ from pytest import approx
 from cutting_problems import SHOP, random_operation
 from trunnion.geometry.spanning_tree import least_tree
 from trunnion.model.verdict import OperationProof, Outcome
-from trunnion.plan.cutting.milling import ROUGHING
+from trunnion.plan.cutting.milling import ROUGHING, cutting_data
 from trunnion.plan.cutting.optimization.operation import OptimizationSettings
 from trunnion.plan.cutting.optimize import choices_of
-from trunnion.plan.cutting.time_bound import HighestRates, highest_rates, least_seconds
+from trunnion.plan.cutting.time_bound import HighestRates, RateSearch, least_seconds
 
 SETTINGS = OptimizationSettings.of({})
 
@@ -38,9 +38,29 @@ def test_no_data_remove_more_than_the_highest_rate(seed):
     operation, process = random_operation(seed)
     material, machine = SHOP.material(process.material), SHOP.machine(process.setups[0].machine)
     made = choices_of(process, SHOP, {}, only=operation.id)[0]
-    rates = highest_rates(made.handbook, material, machine, SETTINGS)
+    rates = RateSearch(material).rates(made.handbook, machine, SETTINGS)
     for data in (made.handbook.data, made.optimised.data):
         assert data.removal_rate <= rates.removal * (1.0 + 1e-3)
+
+
+@pytest.mark.parametrize("name", sorted(SHOP.materials))
+def test_every_mill_of_the_catalogue_has_highest_rates(name):
+    material, machine = SHOP.material(name), SHOP.machine("Mill 1200")
+    search = RateSearch(material)
+    mills = [t for t in SHOP.tools if t.form in ("flat", "bull", "ball")]
+    for tool in mills[::20]:
+        data = cutting_data(
+            tool,
+            material,
+            machine,
+            "rough",
+            SETTINGS.cutting,
+            0.3 * tool.diameter,
+            0.2 * tool.diameter,
+        )
+        operation = replace(random_operation(0)[0], kind="rough", tool=tool, data=data)
+        rates = search.rates(operation, machine, SETTINGS)
+        assert rates.removal >= data.removal_rate > 0.0, tool.name
 
 
 def test_roughing_takes_its_volume_and_finishing_its_area_or_volume():

@@ -18,7 +18,7 @@ from trunnion.plan.cutting.optimization.operation import OptimizationSettings, b
 from trunnion.plan.cutting.optimization.problem import CuttingProblem
 from trunnion.plan.cutting.optimization.settings import OPTIMISED
 from trunnion.plan.cutting.optimize import Choice, choices_of
-from trunnion.plan.cutting.time_bound import highest_rates
+from trunnion.plan.cutting.time_bound import RateSearch
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import SECONDS_PER_MINUTE
 
@@ -92,18 +92,14 @@ def comparisons(
     if session.process is None:
         raise BadCall("no operations yet: generate the route first")
     material = context.shop.material(session.process.material)
-    found, known = [], dict[Any, float]()
+    found, search = [], RateSearch(material)
     for choice in choices_of(session.process, context.shop, session.choices, progress):
         operation = choice.handbook
         bound = 0.0
         if choice.problem is not None:
             machine = context.shop.machine(session.process.setup(operation.setup).machine)
             own = OptimizationSettings.of({**session.choices, **operation.choices})
-            data = operation.data
-            key = operation.cutter, machine.name, operation.kind, data.width, data.depth, own
-            if key not in known:
-                known[key] = highest_rates(operation, material, machine, own).removal
-            bound = known[key]
+            bound = search.rates(operation, machine, own).removal
         found.append(_compared(choice, bound, session))
     return tuple(found)
 

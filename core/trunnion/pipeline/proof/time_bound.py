@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from trunnion.model.session import Session
 from trunnion.model.verdict import Verdict
 from trunnion.pipeline.context import Context
 from trunnion.plan.cutting.optimization.operation import OptimizationSettings
-from trunnion.plan.cutting.time_bound import HighestRates, highest_rates, least_seconds, rates_known
+from trunnion.plan.cutting.time_bound import RateSearch, least_seconds, rates_known
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import SECONDS_PER_MINUTE
 
@@ -34,32 +33,19 @@ def with_bounds(
     material = context.shop.materials.get(process.material) if process else None
     if process is None or material is None:
         return verdict
-    known, rates = {o.id: o for o in process.operations}, dict[Any, HighestRates]()
+    known, search = {o.id: o for o in process.operations}, RateSearch(material)
     proofs = []
     for proof in progress.each(verdict.operations):
         operation = known.get(proof.operation)
         if operation is None:
             proofs.append(proof)
             continue
-        own: HighestRates | None = None
+        rates = None
         if rates_known(operation):
             machine = context.shop.machine(process.setup(operation.setup).machine)
             settings = OptimizationSettings.of({**session.choices, **operation.choices})
-            data = operation.data
-            key = (
-                operation.cutter,
-                machine.name,
-                operation.kind,
-                settings,
-                data.width,
-                data.depth,
-                data.spindle,
-                data.feed_per_tooth,
-            )
-            if key not in rates:
-                rates[key] = highest_rates(operation, material, machine, settings)
-            own = rates[key]
-        proofs.append(replace(proof, bound_s=least_seconds(operation, proof, own)))
+            rates = search.rates(operation, machine, settings)
+        proofs.append(replace(proof, bound_s=least_seconds(operation, proof, rates)))
     beside = sum(_between(p, context.shop.machine(p.setup.machine)) for p in programs)
     whole = beside + sum(p.bound_s for p in proofs)
     return replace(verdict, operations=tuple(proofs), bound_s=min(whole, verdict.machining_time_s))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,7 @@ from trunnion.plan.cutting.optimization.operation import (
 from trunnion.plan.cutting.turning import TURNING_ROUGH
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
 
-SPEEDS, WIDTHS, DEPTHS = 33, 6, 12
+SPEEDS, WIDTHS, DEPTHS = 33, 6, 6
 """Spindle speeds, widths and depths of cut that are looked at."""
 
 
@@ -45,57 +46,72 @@ class HighestRates:
     area: float
 
 
-def highest_rates(
-    operation: Operation, material: Material, machine: Machine, settings: OptimizationSettings
-) -> HighestRates:
-    """Return the highest rates of an operation of a rotating mill that keep the constraints of the optimiser in steady cutting.
+class RateSearch:
+    """Looks for highest rates in a material; what a cutter bears in roughing is looked for once, whatever the depths of its pockets."""
 
-    Roughing may take any width and depth that material and stickout let its cutter take, in slots, along walls or at constant engagement;
-    another pass has the depth and width that its surface asks for. What it finishes a mm of way is the larger of both: of a floor or a
-    curved face its step, of a wall its depth. Its own data count even where they pass the optimiser's limits: they are what it cuts with.
-    """
-    tool, data = operation.cutter, operation.data
-    removal, area = data.removal_rate, max(data.width, data.depth) * data.feed
-    for width, depth in _engagements(operation, material, settings):
-        met = Engagement(width=width, depth=depth, share=1.0, at="")
-        problem = problem_at(operation, met, met, material, machine, settings)
-        spindle = np.geomspace(*problem.spindle, SPEEDS)
-        feed = problem.largest_feed(spindle) * tool.teeth * spindle
-        fastest = float(np.nan_to_num(feed).max())
-        removal = max(removal, width * depth * fastest / MM_PER_METRE)
-        area = max(area, max(width, depth) * fastest)
-    return HighestRates(removal=removal, area=area)
+    def __init__(self, material: Material) -> None:
+        self._material = material
+        self._roughing = dict[Any, float]()
 
+    def rates(
+        self, operation: Operation, machine: Machine, settings: OptimizationSettings
+    ) -> HighestRates:
+        """Return the highest rates of an operation of a rotating mill that keep the constraints of the optimiser in steady cutting.
 
-def _engagements(
-    operation: Operation, material: Material, settings: OptimizationSettings
-) -> Iterator[tuple[float, float]]:
-    """Yield the widths and depths in mm that an operation may cut."""
-    tool, data, limits = operation.cutter, operation.data, settings.cutting
-    yield data.width, data.depth
-    if operation.kind not in ROUGHING:
-        return
-    deepest = max(depth for _, depth in _borne(tool, material, limits))
-    for depth in deepest * np.arange(1, DEPTHS + 1) / DEPTHS:
-        widest = max(
-            engaged_width(tool, material, limits, depth),
-            *(w for w, d in _borne(tool, material, limits) if depth <= d),
+        Roughing may take any width and depth that material and stickout let its cutter take, in slots, along walls or at constant
+        engagement; another pass has the depth and width that its surface asks for. What it finishes a mm of way is the larger of both: of
+        a floor or a curved face its step, of a wall its depth. Its own data count even where they pass the optimiser's limits: they are
+        what it cuts with.
+        """
+        data = operation.data
+        feed = max(data.feed, self._feed(operation, machine, settings, data.width, data.depth))
+        removal = data.width * data.depth * feed / MM_PER_METRE
+        if operation.kind in ROUGHING:
+            key = operation.cutter, operation.kind, machine.name, settings
+            if key not in self._roughing:
+                self._roughing[key] = self._roughed(operation, machine, settings)
+            removal = max(removal, self._roughing[key])
+        return HighestRates(removal=removal, area=max(data.width, data.depth) * feed)
+
+    def _roughed(
+        self, operation: Operation, machine: Machine, settings: OptimizationSettings
+    ) -> float:
+        return max(
+            width * depth * self._feed(operation, machine, settings, width, depth) / MM_PER_METRE
+            for width, depth in _borne(operation.cutter, self._material, settings.cutting)
         )
-        for width in widest * np.arange(1, WIDTHS + 1) / WIDTHS:
-            yield float(width), float(depth)
+
+    def _feed(
+        self,
+        operation: Operation,
+        machine: Machine,
+        settings: OptimizationSettings,
+        width: float,
+        depth: float,
+    ) -> float:
+        """Return the highest feed in mm/min in steady cutting of a width and depth in mm; 0 where nothing keeps the limits."""
+        met = Engagement(width=width, depth=depth, share=1.0, at="")
+        problem = problem_at(operation, met, met, self._material, machine, settings)
+        spindle = np.geomspace(*problem.spindle, SPEEDS)
+        feeds = problem.largest_feed(spindle) * operation.cutter.teeth * spindle
+        return float(np.nan_to_num(feeds).max())
 
 
 def _borne(
     tool: Tool, material: Material, limits: CuttingSettings
-) -> tuple[tuple[float, float], ...]:
-    """Return widths in mm that a cutter bears in roughing, each with the depth up to which: along walls, in layers that slots open, and at
-    constant engagement."""
-    deep = engaged_depth(tool, material, limits)
-    return (
+) -> Iterator[tuple[float, float]]:
+    """Yield widths and depths in mm that a cutter bears in roughing: along walls, in layers that slots open, at constant engagement."""
+    layers = (
         (roughing_width(tool, material, limits), roughing_depth(tool, material, limits)),
         (layer_width(tool, material, limits), layer_depth(tool, material, limits)),
-        (engaged_width(tool, material, limits, deep), deep),
     )
+    flank = engaged_depth(tool, material, limits)
+    for share in np.arange(1, DEPTHS + 1) / DEPTHS:
+        borne = [(width, share * depth) for width, depth in layers]
+        borne.append((engaged_width(tool, material, limits, share * flank), share * flank))
+        for widest, depth in borne:
+            for width in widest * np.arange(1, WIDTHS + 1) / WIDTHS:
+                yield float(width), float(depth)
 
 
 def least_seconds(operation: Operation, proof: OperationProof, rates: HighestRates | None) -> float:
