@@ -17,6 +17,7 @@ from trunnion.plan.cutting.engaged import (
     engaged_depth,
     engaged_width,
     roughing_choice,
+    strip_engagement,
 )
 from trunnion.plan.cutting.milling import (
     CuttingSettings,
@@ -216,3 +217,21 @@ def test_a_lower_limit_on_the_width_narrows_layers_that_were_routed_wider():
     (same,) = balance(process, SHOP, DEFAULT, TABLES).operations
     (less,) = balance(process, SHOP, replace(DEFAULT, width_share=0.6), TABLES).operations
     assert (same.data.width, less.data.width) == (approx(10.0), approx(6.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "material", "height", "depth", "width"),
+    [
+        # One pass 36 mm deep takes half the time of two that are 18 mm deep.
+        ("AL3-regular D20 R0", "EN AW-7075", 36.0, 36.0, 4.5),
+        # Flutes are 38 mm long: two layers either way, and the wider of equals.
+        ("AL3-regular D20 R0", "EN AW-7075", 40.0, 20.0, 4.5),
+        # Three rings of 2 mm 38 mm deep against one ring in layers of 12 mm.
+        ("HM4-regular D20 R0", "Ti-6Al-4V", 36.0, 36.0, 2.0),
+    ],
+)
+def test_a_strip_along_a_wall_is_taken_off_in_the_least_time(name, material, height, depth, width):
+    found = strip_engagement(
+        tool(name), SHOP.material(material), MACHINE, DEFAULT, "profile_rough", height, 4.5
+    )
+    assert found == (approx(depth), approx(width))

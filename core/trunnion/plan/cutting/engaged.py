@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from trunnion import tolerance
@@ -119,6 +120,40 @@ def roughing_choice(
         rule=f"{pattern}: {trimmed(taken.removal_rate, 0)} cm3/min at ap {trimmed(taken.depth, 2)}, ae {trimmed(taken.width, 2)}; "
         f"{trimmed(other.removal_rate, 0)} at ap {trimmed(other.depth, 2)}, ae {trimmed(other.width, 2)}",
     )
+
+
+def strip_engagement(
+    tool: Tool,
+    material: Material,
+    machine: Machine,
+    settings: CuttingSettings,
+    kind: str,
+    height: float,
+    width: float,
+) -> tuple[float, float]:
+    """Return the depth and width in mm that take a strip of a height and width off along a wall in the least time: layers and rings as
+    those that slots open, or along the flank at the width of constant engagement, which a straight pass keeps by itself.
+
+    The time goes with the number of passes over their feed.
+    """
+
+    def passes(deepest: float, widest: Callable[[float], float]) -> tuple[float, float, float]:
+        deep = even_depth(height, deepest)
+        wide = min(widest(deep), width)
+        feed = cutting_data(tool, material, machine, kind, settings, deep, wide).feed
+        count = math.ceil(height / deep - tolerance.COINCIDENT)
+        count *= math.ceil(width / wide - tolerance.COINCIDENT)
+        return count / feed, deep, wide
+
+    layered = passes(
+        layer_depth(tool, material, settings), lambda _: layer_width(tool, material, settings)
+    )
+    flank = passes(
+        engaged_depth(tool, material, settings),
+        lambda deep: engaged_width(tool, material, settings, deep),
+    )
+    _, depth, taken = min(layered, flank, key=lambda found: found[0])
+    return depth, taken
 
 
 def even_depth(height: float, most: float) -> float:

@@ -259,7 +259,7 @@ def cutting_data(
         torque=NEWTON_METRES * power / spindle,
         rules=tuple(rules),
         widest=widest,
-        entry_angle=material.entry_angle if kind == ROUGH else 0.0,
+        entry_angle=material.entry_angle * share if kind == ROUGH else 0.0,
         # Finishing enters thin skins: there a ramp takes no time, and would be the largest removal of the operation.
         ramp_share=settings.ramp_share if kind in ROUGHING else 0.0,
         fastest_link=fastest,

@@ -177,8 +177,7 @@ def recomputed(
         return turned_again(operation, operation.tool, material, shop, machine, settings)
     depth, width = operation.data.routed_depth or operation.data.depth, operation.data.width
     if operation.kind in ROUGHING and operation.kind != "face":
-        depth = min(depth, _bears(operation, depth, material, settings))
-        width = min(width, _bears_width(operation, width, material, settings))
+        depth, width = _borne(operation, depth, width, material, settings)
     if operation.kind in TABLE_KINDS or operation.cutter.form in TABLE_FORMS:
         data = table_data(operation.kind, operation.cutter, material, machine, shop, settings)
         return replace(operation, data=data)
@@ -198,33 +197,26 @@ def recomputed(
     return replace(operation, data=data)
 
 
-def _bears(
-    operation: Operation, depth: float, material: Material, settings: CuttingSettings
-) -> float:
-    """Return the depth (mm) that an operation bears under some limits; one that its route made deeper than the tables' depth of cut has
-    layers."""
-    tool = operation.cutter
-    if operation.data.is_engaged:
-        return engaged_depth(tool, material, settings)
-    if depth > roughing_depth(tool, material, choose(CuttingSettings, {})) * (
-        1.0 + tolerance.PARAMETRIC
-    ):
-        return layer_depth(tool, material, settings)
-    return roughing_depth(tool, material, settings)
+def _borne(
+    operation: Operation, depth: float, width: float, material: Material, settings: CuttingSettings
+) -> tuple[float, float]:
+    """Return the depth and width (mm) of an operation as far as its cutter bears them under some limits: as the first of what cutters bear
+    along walls, in layers that slots open, and at constant engagement that its route's depth and width are within."""
+    tool, tables = operation.cutter, choose(CuttingSettings, {})
 
+    def pairs(limits: CuttingSettings) -> tuple[tuple[float, float], ...]:
+        flank = engaged_depth(tool, material, limits)
+        return (
+            (roughing_depth(tool, material, limits), roughing_width(tool, material, limits)),
+            (layer_depth(tool, material, limits), layer_width(tool, material, limits)),
+            (flank, engaged_width(tool, material, limits, min(depth, flank))),
+        )
 
-def _bears_width(
-    operation: Operation, width: float, material: Material, settings: CuttingSettings
-) -> float:
-    """Return the width (mm) that an operation bears under some limits, as `_bears` its depth."""
-    tool = operation.cutter
-    if operation.data.is_engaged:
-        return engaged_width(tool, material, settings, operation.data.depth)
-    if width > roughing_width(tool, material, choose(CuttingSettings, {})) * (
-        1.0 + tolerance.PARAMETRIC
-    ):
-        return layer_width(tool, material, settings)
-    return roughing_width(tool, material, settings)
+    slack = 1.0 + tolerance.PARAMETRIC
+    within = [depth <= d * slack and width <= w * slack for d, w in pairs(tables)]
+    row = 2 if operation.data.is_engaged else within.index(True) if any(within) else 1
+    deepest, widest = pairs(settings)[row]
+    return min(depth, deepest), min(width, widest)
 
 
 def turned_again(

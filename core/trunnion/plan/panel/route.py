@@ -16,7 +16,12 @@ from trunnion.model.setup import Setup
 from trunnion.model.tabs import POSITIONS
 from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
-from trunnion.plan.cutting.engaged import RoughingChoice, even_depth, roughing_choice
+from trunnion.plan.cutting.engaged import (
+    RoughingChoice,
+    even_depth,
+    roughing_choice,
+    strip_engagement,
+)
 from trunnion.plan.cutting.milling import (
     ROUGH,
     CuttingSettings,
@@ -81,8 +86,11 @@ FACE_WIDTH, WALL_STEP = 0.7, 1.5
 ROUGHED, PATTERN = "plane.rough", "plane.rough.pattern"
 """The strategy that clears pockets in either pattern, and the key of the choice of one."""
 
-LAYERED = ("rough", "profile_rough")
-"""Kinds of operations in layers by contour-parallel passes: they slow down in the slots that open a layer, or come from outside."""
+SLOTTED = ("rough", "profile_rough", "rib_top", "island_top", "boss_top")
+"""Kinds of operations whose layers are as deep and wide as slots let them be: they go slower in the slots that open a layer, or come from
+free space."""
+DEEP = (*SLOTTED, "corner")
+"""Kinds of operations whose layers are as deep as slots: rests in corners are less than a slot."""
 
 
 def make_route(
@@ -336,9 +344,9 @@ def _engagement(
     if task.engagement is not None:
         return task.engagement(tool)
     kind, allowance = task.stage.kind, state.settings.wall_allowance
-    bears = layer_depth if kind in LAYERED else roughing_depth
+    bears = layer_depth if kind in DEEP else roughing_depth
     rough_depth = even_depth(task.height, bears(tool, state.material, cutting))
-    takes = layer_width if kind in LAYERED else roughing_width
+    takes = layer_width if kind in SLOTTED else roughing_width
     rough_width = takes(tool, state.material, cutting)
     if kind == "face":
         return even_depth(task.height, min(tool.flute_length / 2, rough_depth)), min(
@@ -357,7 +365,10 @@ def _engagement(
     if kind in ("rib_top", "island_top", "boss_top"):
         return rough_depth, min(rough_width, task.width + 2 * allowance)
     if kind == "profile_rough":
-        return rough_depth, min(rough_width, max(task.width - allowance, tolerance.SEW))
+        strip = max(task.width - allowance, tolerance.SEW)
+        return strip_engagement(
+            tool, state.material, state.machine, cutting, kind, task.height, strip
+        )
     return rough_depth, rough_width
 
 

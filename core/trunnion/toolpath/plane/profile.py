@@ -25,7 +25,8 @@ from trunnion.toolpath.axis_region import AxisRegion, level_at
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.engagement import contour_leftovers, inner_corner
+from trunnion.toolpath.motion.easing import eased
+from trunnion.toolpath.motion.engagement import EASING_SLACK, contour_leftovers, inner_corner
 from trunnion.toolpath.motion.link import ASIDE
 from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting import choices
@@ -140,7 +141,11 @@ def profile_rough(
                     0.0 if distance == distances[-1] else LITTLE * tool.diameter,
                 )
         findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
-    return _planned(drive, builder, findings)
+    planned = _planned(drive, builder, findings)
+    # A ring meets a slot where the outline turns into a notch: there it may take what it takes in a corner, as the load was foreseen.
+    corner = _ring_width(tool, data, settings, None).width / EASING_SLACK
+    path = eased(planned.path, tool, data, stock, max(corner, data.width) / tool.diameter, progress)
+    return replace(planned, path=path)
 
 
 @strategy(settings=ProfileFinishSettings, drive=PlaneDrive, meets=contour_leftovers, own_faces=True)
