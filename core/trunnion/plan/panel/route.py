@@ -79,7 +79,7 @@ from trunnion.units import trimmed
 
 __all__ = ["RouteSettings", "make_route"]
 
-FACE_WIDTH, WALL_STEP = 0.7, 1.5
+FACE_WIDTH, WALL_STEP = 0.75, 1.5
 """Width of a face mill's path and axial step of a wall, both over the diameter."""
 
 

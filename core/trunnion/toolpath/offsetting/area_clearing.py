@@ -213,6 +213,17 @@ def _enter_sideways(
         return None
     _, s, before = best
     travel(builder, before, layer.z, layer.axis_region)
+    # The free part of the way is found by bisection and gone at the whole feed.
+    free, met = 0.0, 1.0
+    way = loop.at(s)[0] - before
+    while (met - free) * float(np.hypot(*way)) > builder.safety:
+        middle = 0.5 * (free + met)
+        if is_free(builder, before, layer.z, before + middle * way):
+            free = middle
+        else:
+            met = middle
+    if free > 0.0:
+        builder.line((*(before + free * way), layer.z), builder.data.feed, Mark.LINK)
     share = parameters.slot * min(parameters.step / builder.tool.diameter, 1.0)
     builder.line((*loop.at(s)[0], layer.z), builder.data.feed * share, Mark.ENTRY)
     return s
