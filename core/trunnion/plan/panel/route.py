@@ -18,6 +18,8 @@ from trunnion.model.tool import Tool
 from trunnion.plan.clearance import ClearanceScene
 from trunnion.plan.cutting.engaged import (
     RoughingChoice,
+    engaged_depth,
+    engaged_width,
     even_depth,
     roughing_choice,
     strip_engagement,
@@ -89,8 +91,6 @@ ROUGHED, PATTERN = "plane.rough", "plane.rough.pattern"
 SLOTTED = ("rough", "profile_rough", "rib_top", "island_top", "boss_top")
 """Kinds of operations whose layers are as deep and wide as slots let them be: they go slower in the slots that open a layer, or come from
 free space."""
-DEEP = (*SLOTTED, "corner")
-"""Kinds of operations whose layers are as deep as slots: rests in corners are less than a slot."""
 
 
 def make_route(
@@ -344,7 +344,7 @@ def _engagement(
     if task.engagement is not None:
         return task.engagement(tool)
     kind, allowance = task.stage.kind, state.settings.wall_allowance
-    bears = layer_depth if kind in DEEP else roughing_depth
+    bears = layer_depth if kind in SLOTTED else roughing_depth
     rough_depth = even_depth(task.height, bears(tool, state.material, cutting))
     takes = layer_width if kind in SLOTTED else roughing_width
     rough_width = takes(tool, state.material, cutting)
@@ -362,6 +362,10 @@ def _engagement(
         ), max(allowance, tolerance.SEW)
     if kind == "foot":
         return task.height, task.height
+    if kind == "corner":
+        # A rest's section is less than that of constant engagement where it is no wider.
+        flank = even_depth(task.height, engaged_depth(tool, state.material, cutting))
+        return flank, min(rough_width, engaged_width(tool, state.material, cutting, flank))
     if kind in ("rib_top", "island_top", "boss_top"):
         return rough_depth, min(rough_width, task.width + 2 * allowance)
     if kind == "profile_rough":
