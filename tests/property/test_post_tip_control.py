@@ -84,6 +84,7 @@ def off(planned, read):
     )
 
 
+@pytest.mark.examples(5)
 @by_dialect
 @by_machine
 @settings(deadline=None, max_examples=15)
