@@ -140,6 +140,16 @@ def _parts_are_read_by_a_warm_process() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _engines_share_the_programs_own_catalogues() -> Iterator[None]:
+    """Read the catalogues for the first engine only, where it has no folder of a user."""
+    from own_shop import shop_of
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("trunnion.pipeline.engine.load_shop", shop_of)
+        yield
+
+
 @pytest.fixture(autouse=True)
 def _cold(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """With the mark `cold`, read part files as the program does."""

@@ -10,17 +10,17 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from leaning_paths import HEADER, lean, path_of, program, standing
+from own_shop import own_shop
 from programs import FLAT_16, S1
 from trunnion import registry
 from trunnion.findings import Refused
 from trunnion.model.material import leaning_axis
 from trunnion.post.settings import PostSettings
-from trunnion.shop import load_shop
 from trunnion.shop.rotary_angles import followed
 from trunnion.verify.machine.kinematics import axis_positions
 from trunnion.verify.motion import moves_of
 
-SHOP = load_shop()
+SHOP = own_shop()
 HEAD = SHOP.machine("Universal 1250")
 MACHINES = [m for m in SHOP.machines.values() if m.rotary]
 DIALECTS = ("sinumerik", "heidenhain")
