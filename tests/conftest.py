@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 os.environ["TRUNNION_USER_FOLDER"] = str(Path(tempfile.gettempdir()) / "trunnion-tests-no-folder")
@@ -72,6 +73,39 @@ LONGEST_FIRST = (
 other one needs later, and not at the same time."""
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """Let properties say how few examples the quick run has of them."""
+    config.addinivalue_line(
+        "markers",
+        "examples(quick): so few examples in the quick run, all of them in the long tests",
+    )
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Make two tests of a property with the mark `examples`: one of few examples, and one of all of them for the long tests."""
+    if (mark := metafunc.definition.get_closest_marker("examples")) is not None:
+        every = metafunc.function._hypothesis_internal_use_settings.max_examples
+        metafunc.fixturenames.append("examples")
+        metafunc.parametrize(
+            "examples", [mark.args[0], pytest.param(every, marks=pytest.mark.long)], ids=str
+        )
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
+    """Look at as many examples as the case of a property has."""
+    spec = getattr(pyfuncitem, "callspec", None)
+    if pyfuncitem.get_closest_marker("examples") is None or spec is None:
+        return (yield)
+    test = pyfuncitem.function
+    usual = test._hypothesis_internal_use_settings
+    test._hypothesis_internal_use_settings = settings(usual, max_examples=spec.params["examples"])
+    try:
+        return (yield)
+    finally:
+        test._hypothesis_internal_use_settings = usual
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files of `LONGEST_FIRST`; all others follow as they came."""
     rank = {name: n for n, name in enumerate(LONGEST_FIRST)}
@@ -103,6 +137,16 @@ def _parts_are_read_by_a_warm_process() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         if CAN_FORK:
             patch.setattr(child, "subprocess", READERS)
+        yield
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _engines_share_the_programs_own_catalogues() -> Iterator[None]:
+    """Read the catalogues for the first engine only, where it has no folder of a user."""
+    from own_shop import shop_of
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("trunnion.pipeline.engine.load_shop", shop_of)
         yield
 
 

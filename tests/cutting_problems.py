@@ -9,14 +9,14 @@ from random import Random
 import numpy as np
 
 from flat_parts import operation
+from own_shop import own_shop
 from trunnion.geometry.frame import WORLD
 from trunnion.model.operation import Operation
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
 from trunnion.plan.cutting.optimization.problem import CuttingProblem
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=20.0, machine="Mill 1200")
 MILLS = [t for t in SHOP.tools if t.form in ("flat", "bull", "ball")]
 STRATEGIES = {

@@ -9,6 +9,7 @@ from unittest import mock
 
 import numpy as np
 
+from own_shop import own_shop
 from programs import FLAT_16, S1
 from trunnion.geometry.arrays import Floats
 from trunnion.model.material import Axis, Machine
@@ -23,10 +24,9 @@ from trunnion.post.readers.sections import SectionBlocks
 from trunnion.post.readers.word_address import interpreter as control
 from trunnion.post.readers.word_address.joints import Joints
 from trunnion.post.settings import PostSettings
-from trunnion.shop import load_shop
 from trunnion.shop.kinematics import WorkPosition
 
-SHOP = load_shop()
+SHOP = own_shop()
 TABLE, FORK = SHOP.machine("Trunnion 650"), SHOP.machine("Gantry 6000 fork")
 ENDLESS_FORK = replace(
     FORK, axes=(*FORK.axes[:3], replace(FORK.axes[3], low=-99999.0, high=99999.0), FORK.axes[4])

@@ -7,14 +7,14 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from own_shop import own_shop
 from trunnion.model.tool import BORING_BAR, BUTTON, REAMER, TAP, THREAD_MILL, Holder, Tool
 from trunnion.model.tool.drill import point_height
 from trunnion.model.tool.lead import basic_minor_diameter
-from trunnion.shop import load_shop
 from trunnion.shop.cutters import ISO_GROUPS, USES, Cutter, load_holders
 from trunnion.shop.exchange import ExchangeContext
 
-SHOP = load_shop()
+SHOP = own_shop()
 HOLDERS = load_holders(None)
 CONTEXT = ExchangeContext(holders=HOLDERS, cutters=SHOP.cutters)
 FORMS = (

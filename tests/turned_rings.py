@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
+from own_shop import own_shop
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Revolved
 from trunnion.model.operation import CuttingData
@@ -14,9 +15,8 @@ from trunnion.model.tool import TurningTool
 from trunnion.plan.turning.drive import RevolvedDrive
 from trunnion.plan.turning.settings import TurningSettings
 from trunnion.progress import NO_PROGRESS
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 RING = np.array(
     [(94, 0), (120, 0), (120, 10), (100, 10), (100, 90), (120, 90), (120, 100), (94, 100)], float
 )

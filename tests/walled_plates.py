@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from flat_parts import MILL, FlatPart, Prism, blank_of
 from holed import HIGH
+from own_shop import own_shop
 from trunnion.geometry.frame import WORLD
 from trunnion.geometry.plane.region import Region
 from trunnion.model.feature import FaceRole, Feature, Recognition
@@ -14,9 +15,8 @@ from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 
 
 def walled(*holes, wall: float = 0.0, at: float = 40.0):

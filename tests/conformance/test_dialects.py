@@ -156,6 +156,7 @@ def test_what_it_writes_is_the_same_within_its_decimals(dialect, units, decimals
         )
 
 
+@pytest.mark.examples(20)
 @by_name
 @settings(deadline=None, max_examples=60)
 @given(parts=programs)
@@ -286,6 +287,7 @@ def test_a_cycle_is_written_so_that_its_motions_are_read_or_refused(dialect, kin
     assert read.path.dwells() == pytest.approx(planned.dwells())
 
 
+@pytest.mark.examples(20)
 @by_name
 @settings(deadline=None, max_examples=60)
 @given(made=cycles(), tops=some_tops, start=starts)
@@ -400,6 +402,7 @@ def test_no_program_at_all_is_a_bad_call(dialect):
         dialect.write([], HEADER, PostSettings())
 
 
+@pytest.mark.examples(50)
 @by_name
 @settings(deadline=None, max_examples=150)
 @given(places=spoils)

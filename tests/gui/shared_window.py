@@ -32,6 +32,8 @@ def shared_window(settings: Path, factory: str = "trunnion.pipeline:Engine") -> 
         until(lambda: bool(window.document.groups))
         yield window
         window.close()
+        # One that stays would be dressed anew with every theme that a later test takes.
+        window.deleteLater()
 
 
 @contextmanager

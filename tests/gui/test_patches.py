@@ -6,13 +6,13 @@ The part is a plate with three small domes, a larger one and a wall with a fille
 from __future__ import annotations
 
 import math
-import time
 
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QMenu
+from shared_window import shared_window, until
 from test_viewport import hue, pixel
 
 from samples import written
@@ -52,14 +52,7 @@ def domed_plate():
 @pytest.fixture(scope="module")
 def segmented(qapp, tmp_path_factory):
     """One window for all tests here, with the plate segmented; every test takes back what it changed."""
-    from trunnion_gui.window import Window
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
-        window = Window()
-        window.unsaved.confirms = False
-        window.resize(1440, 900)
-        window.show()
+    with shared_window(tmp_path_factory.mktemp("settings")) as window:
         window.document.files.open(written(domed_plate(), name="domes"))
         until(lambda: window.document.has_part and not window.document.is_busy)
         window.document.choose("recognize.family", "Family: surface", "surface")
@@ -68,7 +61,6 @@ def segmented(qapp, tmp_path_factory):
             lambda: window.document.session.recognition is not None and not window.document.is_busy
         )
         yield window
-        window.close()
 
 
 @pytest.fixture
@@ -84,14 +76,6 @@ def shown(segmented, qtbot):
     qtbot.waitUntil(
         lambda: not window.document.is_busy and not window.document.jobs.is_querying, timeout=30000
     )
-
-
-def until(is_so, seconds=60.0) -> None:
-    """Wait until something is so."""
-    end = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < end
-        QTest.qWait(10)
 
 
 def click(window, place, button=LEFT, keys=Qt.KeyboardModifier.NoModifier) -> None:

@@ -7,6 +7,7 @@ import os
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from shared_window import shared_window, wait
 
 from samples import block_with_pocket
 from trunnion.shop.library import PlanLibrary, library_file
@@ -14,26 +15,45 @@ from trunnion.shop.library import PlanLibrary, library_file
 CLICK = Qt.MouseButton.LeftButton
 
 
-@pytest.fixture
-def library(tmp_path, monkeypatch):
-    """The library of a folder of the test's own: the window's worker starts afresh with it in its environment."""
-    monkeypatch.setenv("TRUNNION_USER_FOLDER", str(tmp_path))
-    return PlanLibrary(library_file(None))
+@pytest.fixture(scope="module")
+def routed_once(qapp, tmp_path_factory):
+    """One window for all tests here, the library of a folder of their own, and the project of a routed part."""
+    folder = tmp_path_factory.mktemp("library")
+    with pytest.MonkeyPatch.context() as patch:
+        # The window's worker starts with the folder in its environment.
+        patch.setenv("TRUNNION_USER_FOLDER", str(folder))
+        with shared_window(folder / "settings") as window:
+            window.document.files.open(block_with_pocket())
+            wait(window)
+            window.document.run("route", "Generate route")
+            wait(window)
+            window.document.files.save(folder / "routed.trunnion")
+            wait(window)
+            yield window, PlanLibrary(library_file(None)), folder / "routed.trunnion"
 
 
 @pytest.fixture
-def routed(library, make_window, qtbot, idle):
-    """A window with a routed part and the library's block open."""
-    window = make_window("trunnion.pipeline:Engine")
-    window.document.files.open(block_with_pocket())
-    idle(window, 90000)
-    window.document.run("route", "Generate route")
-    idle(window, 90000)
+def library(routed_once):
+    """That library, with no plan in it."""
+    library = routed_once[1]
+    for name in library.names():
+        library.remove(name)
+    return library
+
+
+@pytest.fixture
+def routed(routed_once, library, qtbot):
+    """That window with the routed part and the library's block open."""
+    window, _, project = routed_once
+    window.document.files.open(project)
+    wait(window)
     panel = window.panels["route"]
     panel.fold(False)
     qtbot.waitUntil(panel.library.header.isVisible, timeout=5000)
-    QTest.mouseClick(panel.library.header, CLICK, pos=QPoint(30, 8))
-    idle(window)
+    panel.library.name.clear()
+    if not panel.library.add.isVisible():
+        QTest.mouseClick(panel.library.header, CLICK, pos=QPoint(30, 8))
+    wait(window)
     return window
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from fake_engine import FLOOR, HEADER, POCKETS
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QTextCursor
 from PySide6.QtTest import QTest
+from shared_window import shared_window, until
 from test_viewport import hue, pixel
 
 from leaning_tools import EVERY_FORM
@@ -27,21 +27,13 @@ MIDDLES = {
 @pytest.fixture(scope="module")
 def programmed(qapp, tmp_path_factory):
     """One window for all tests here, with the made-up part programmed."""
-    from trunnion_gui.window import Window
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("TRUNNION_SETTINGS", str(tmp_path_factory.mktemp("settings")))
-        window = Window("fake_engine:FakeEngine")
-        window.unsaved.confirms = False
-        window.resize(1440, 900)
-        window.show()
-        part = tmp_path_factory.mktemp("parts") / "tray.step"
-        part.write_text("a made-up part")
+    part = tmp_path_factory.mktemp("parts") / "tray.step"
+    part.write_text("a made-up part")
+    with shared_window(tmp_path_factory.mktemp("settings"), "fake_engine:FakeEngine") as window:
         window.document.files.open(part)
         window.document.program()
         until(lambda: not window.document.is_busy and window.document.session.verdict is not None)
         yield window
-        window.close()
 
 
 @pytest.fixture
@@ -58,14 +50,6 @@ def played(programmed, qtbot):
     yield window
     if window.player.is_on:
         window.registry.run("play.show")
-
-
-def until(is_so, seconds=60.0) -> None:
-    """Wait until something is so."""
-    end = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < end
-        QTest.qWait(10)
 
 
 def settled(window, qtbot) -> None:

@@ -71,18 +71,17 @@ def answering(window, monkeypatch, answer) -> list[int]:
     return asked
 
 
-@pytest.mark.parametrize("way", WAYS)
 def test_cancel_keeps_the_work_whichever_way_another_file_is_opened(
-    programmed, other_file, idle, monkeypatch, way
+    programmed, other_file, idle, monkeypatch
 ):
-    asked, before = answering(programmed, monkeypatch, CANCEL), programmed.document.session
-    way(programmed, other_file, monkeypatch)
-    idle(programmed)
-    assert len(asked) == 1
-    assert (
-        programmed.document.session is before
-        and programmed.document.history.undo_label == "Program"
-    )
+    before = programmed.document.session
+    for way in WAYS:
+        asked = answering(programmed, monkeypatch, CANCEL)
+        way(programmed, other_file, monkeypatch)
+        idle(programmed)
+        assert len(asked) == 1, way
+        assert programmed.document.session is before, way
+        assert programmed.document.history.undo_label == "Program", way
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -11,6 +11,7 @@ import pytest
 from fake_engine import FLOOR, HEIGHT, LENGTH, WIDTH, box_mesh
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from shared_window import shared_window, taken_back, wait
 
 from trunnion.geometry.frame import WORLD
 from trunnion.model.blank import Revolved
@@ -42,6 +43,28 @@ def recognized(window, part_file, idle, qtbot):
     return window
 
 
+@pytest.fixture(scope="module")
+def shown_once(qapp, tmp_path_factory):
+    """One window for all tests that only look and select, with the made-up part's features."""
+    part = tmp_path_factory.mktemp("parts") / "tray.step"
+    part.write_text("a made-up part")
+    with shared_window(tmp_path_factory.mktemp("settings"), "fake_engine:FakeEngine") as window:
+        window.document.files.open(part)
+        wait(window)
+        window.document.run("recognize", "Recognize")
+        wait(window)
+        yield window
+
+
+@pytest.fixture
+def shown(shown_once, qtbot):
+    """That window from the top, with nothing selected."""
+    with taken_back(shown_once) as window:
+        window.registry.run("view.top")
+        qtbot.wait(20)
+        yield window
+
+
 def pixel(window, point) -> np.ndarray:
     """Return the colour (3,) 0 to 255 that the viewport shows at a point of the part."""
     view = window.viewport.scene.view
@@ -58,12 +81,12 @@ def hue(colour) -> np.ndarray:
 
 
 @pytest.mark.parametrize("id", IN_POCKET)
-def test_a_pocket_has_the_pockets_colour(recognized, id):
-    assert hue(pixel(recognized, IN_POCKET[id])) @ hue(rgb(kind_colour("pocket"))) > 0.97
+def test_a_pocket_has_the_pockets_colour(shown, id):
+    assert hue(pixel(shown, IN_POCKET[id])) @ hue(rgb(kind_colour("pocket"))) > 0.97
 
 
-def test_a_rib_has_the_ribs_colour(recognized):
-    assert hue(pixel(recognized, ON_RIB)) @ hue(rgb(kind_colour("rib"))) > 0.97
+def test_a_rib_has_the_ribs_colour(shown):
+    assert hue(pixel(shown, ON_RIB)) @ hue(rgb(kind_colour("rib"))) > 0.97
 
 
 def test_without_colours_everything_looks_like_metal(recognized):
@@ -71,74 +94,72 @@ def test_without_colours_everything_looks_like_metal(recognized):
     assert np.ptp(pixel(recognized, IN_POCKET["pocket-01"])) < 20
 
 
-def test_a_click_on_the_part_selects_the_row(recognized):
-    view, scene = recognized.viewport.scene.view, recognized.viewport.scene
+def test_a_click_on_the_part_selects_the_row(shown):
+    view, scene = shown.viewport.scene.view, shown.viewport.scene
     QTest.mouseClick(view, LEFT, pos=scene.where(IN_POCKET["pocket-02"]).toPoint())
-    assert recognized.document.selection.current.id == "pocket-02"
-    assert recognized.docks.features.tree.currentItem().text(0) == "pocket-02"
+    assert shown.document.selection.current.id == "pocket-02"
+    assert shown.docks.features.tree.currentItem().text(0) == "pocket-02"
 
 
-def test_a_click_on_the_row_highlights_the_faces(recognized, qtbot):
-    before = pixel(recognized, IN_POCKET["pocket-03"])
-    tree = recognized.docks.features.tree
+def test_a_click_on_the_row_highlights_the_faces(shown, qtbot):
+    before = pixel(shown, IN_POCKET["pocket-03"])
+    tree = shown.docks.features.tree
     QTest.mouseClick(
         tree.viewport(),
         LEFT,
-        pos=tree.visualItemRect(recognized.docks.features.item("pocket-03")).center(),
+        pos=tree.visualItemRect(shown.docks.features.item("pocket-03")).center(),
     )
     qtbot.wait(20)
-    after = pixel(recognized, IN_POCKET["pocket-03"])
+    after = pixel(shown, IN_POCKET["pocket-03"])
     assert (
-        hue(after) @ hue(rgb(recognized.theme.selection))
+        hue(after) @ hue(rgb(shown.theme.selection))
         > 0.9
-        > hue(before) @ hue(rgb(recognized.theme.selection))
+        > hue(before) @ hue(rgb(shown.theme.selection))
     )
 
 
-def test_a_click_beside_the_part_selects_nothing(recognized):
-    recognized.document.selection.select_feature("pocket-01")
+def test_a_click_beside_the_part_selects_nothing(shown):
+    shown.document.selection.select_feature("pocket-01")
     QTest.mouseClick(
-        recognized.viewport.scene.view,
+        shown.viewport.scene.view,
         LEFT,
-        pos=QPoint(recognized.viewport.scene.view.width() - 4, 4),
+        pos=QPoint(shown.viewport.scene.view.width() - 4, 4),
     )
-    assert recognized.document.selection.current.kind == ""
+    assert shown.document.selection.current.kind == ""
 
 
-def test_a_drag_turns_the_part_and_selects_nothing(recognized):
-    view = recognized.viewport.scene.view
+def test_a_drag_turns_the_part_and_selects_nothing(shown):
+    view = shown.viewport.scene.view
     before = view.camera.position
-    start = recognized.viewport.scene.where(IN_POCKET["pocket-01"]).toPoint()
+    start = shown.viewport.scene.where(IN_POCKET["pocket-01"]).toPoint()
     QTest.mousePress(view, LEFT, pos=start)
     QTest.mouseMove(view, start + QPoint(60, 40))
     QTest.mouseRelease(view, LEFT, pos=start + QPoint(60, 40))
-    assert recognized.document.selection.current.kind == ""
+    assert shown.document.selection.current.kind == ""
     assert view.camera.position != before
 
 
 @pytest.mark.parametrize(("view", "axis"), [("top", 2), ("front", 1), ("right", 0)])
-def test_a_standard_view_looks_along_its_axis(recognized, view, axis):
-    recognized.registry.run(f"view.{view}")
+def test_a_standard_view_looks_along_its_axis(shown, view, axis):
+    shown.registry.run(f"view.{view}")
     away = np.subtract(
-        recognized.viewport.scene.view.camera.position,
-        recognized.viewport.scene.view.camera.focal_point,
+        shown.viewport.scene.view.camera.position,
+        shown.viewport.scene.view.camera.focal_point,
     )
     assert np.argmax(np.abs(away)) == axis
     assert np.sort(np.abs(away))[1] < 1e-6 * np.abs(away).max()
 
 
-def test_the_legend_names_the_kinds_with_their_counts(recognized):
-    rows = [(words, count) for _, words, count in recognized.viewport.legend.rows]
+def test_the_legend_names_the_kinds_with_their_counts(shown):
+    rows = [(words, count) for _, words, count in shown.viewport.legend.rows]
     assert rows == [("Pocket", "3"), ("Rib", "2"), ("Datum", "1"), ("Profile", "1")]
 
 
-def test_the_table_and_the_legend_have_the_same_colours(recognized):
-    top = recognized.docks.features.tree.topLevelItem(0)
+def test_the_table_and_the_legend_have_the_same_colours(shown):
+    top = shown.docks.features.tree.topLevelItem(0)
     image = top.icon(0).pixmap(24, 24).toImage()
     assert (
-        image.pixelColor(12, 12).name()
-        == kind_colour("pocket")
-        == recognized.viewport.legend.rows[0][0]
+        image.pixelColor(12, 12).name() == kind_colour("pocket") == shown.viewport.legend.rows[0][0]
     )
 
 
@@ -204,16 +225,14 @@ def test_only_the_ticked_motions_are_shown(recognized, idle):
     assert "rapids" not in recognized.viewport.scene.view.actors
 
 
-def test_a_section_opens_the_part(recognized):
-    recognized.registry.run("view.section")
+def test_a_section_opens_the_part(shown):
+    shown.registry.run("view.section")
     assert (
-        recognized.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems()
-        == 1
+        shown.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 1
     )
-    recognized.registry.run("view.section")
+    shown.registry.run("view.section")
     assert (
-        recognized.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems()
-        == 0
+        shown.viewport.scene.view.actors["part"].mapper.GetClippingPlanes().GetNumberOfItems() == 0
     )
 
 

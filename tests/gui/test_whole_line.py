@@ -42,6 +42,7 @@ def programmed(tmp_path_factory, qapp):
         gc_control.stop()
         yield person
         window.close()
+        window.deleteLater()
 
 
 def test_the_part_is_programmed_in_at_most_five_interactions(programmed):

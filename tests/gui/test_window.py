@@ -11,6 +11,7 @@ from PySide6.QtCore import QMimeData, QObject, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDropEvent, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton, QToolButton
+from shared_window import shared_window, taken_back, wait
 
 from trunnion.findings import Fix, error, face_tags, warning
 from trunnion_gui.look import icons
@@ -19,6 +20,27 @@ from trunnion_gui.widgets.finder import score
 from trunnion_gui.worker.steps import STAGES, STEPS, TITLES, joined_state
 
 LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture(scope="module")
+def programmed_once(qapp, tmp_path_factory):
+    """One window for tests that take back what they changed, with the made-up part programmed."""
+    part = tmp_path_factory.mktemp("parts") / "tray.step"
+    part.write_text("a made-up part")
+    with shared_window(tmp_path_factory.mktemp("settings"), "fake_engine:FakeEngine") as window:
+        window.document.files.open(part)
+        wait(window)
+        window.document.program()
+        wait(window)
+        yield window
+
+
+@pytest.fixture
+def tray(programmed_once):
+    """That window with nothing selected and no message filtered."""
+    with taken_back(programmed_once) as window:
+        window.docks.messages.filter.words.clear()
+        yield window
 
 
 def tool_button(window, command: str) -> QToolButton:
@@ -70,12 +92,12 @@ def test_every_panel_runs_its_step(opened, idle):
         assert opened.panels[panel].state == "done"
 
 
-def test_a_setting_makes_its_step_and_all_after_it_stale(programmed, idle):
-    field = programmed.panels["blank"].forms[0].field("fake.blank.side")
+def test_a_setting_makes_its_step_and_all_after_it_stale(tray, idle):
+    field = tray.panels["blank"].forms[0].field("fake.blank.side")
     field.setValue(8.0)
-    idle(programmed)
-    assert programmed.document.session.choices["fake.blank.side"] == 8.0
-    assert [programmed.panels[n].state for n in ("recognize", "size", "blank", "route")] == [
+    idle(tray)
+    assert tray.document.session.choices["fake.blank.side"] == 8.0
+    assert [tray.panels[n].state for n in ("recognize", "size", "blank", "route")] == [
         "done",
         "done",
         "stale",
@@ -93,55 +115,54 @@ def test_undo_takes_a_setting_back_and_redo_brings_it_again(opened, idle):
     assert field.value() == 8.0
 
 
-def test_a_deleted_feature_comes_back_with_undo(programmed, idle):
-    programmed.document.selection.select_feature("rib-01")
-    programmed.registry.run("edit.delete")
-    idle(programmed)
-    assert programmed.document.feature("rib-01") is None
-    programmed.registry.run("edit.undo")
-    assert programmed.document.feature("rib-01") is not None
+def test_a_deleted_feature_comes_back_with_undo(tray, idle):
+    tray.document.selection.select_feature("rib-01")
+    tray.registry.run("edit.delete")
+    idle(tray)
+    assert tray.document.feature("rib-01") is None
+    tray.registry.run("edit.undo")
+    assert tray.document.feature("rib-01") is not None
 
 
-def test_the_unexplained_share_follows_a_deletion(programmed, idle):
-    programmed.document.selection.select_feature("profile-01")
-    programmed.registry.run("edit.delete")
-    idle(programmed)
+def test_the_unexplained_share_follows_a_deletion(tray, idle):
+    tray.document.selection.select_feature("profile-01")
+    tray.registry.run("edit.delete")
+    idle(tray)
     around = 2 * (240.0 + 140.0) * 30.0
-    share = 100.0 * around / programmed.document.session.recognition.face_area.sum()
+    share = 100.0 * around / tray.document.session.recognition.face_area.sum()
     assert (
-        f"4 faces unexplained ({share:.1f} % of the area)"
-        in programmed.panels["recognize"].result.text()
+        f"4 faces unexplained ({share:.1f} % of the area)" in tray.panels["recognize"].result.text()
     )
 
 
-def test_the_feature_menu_changes_a_kind(programmed, idle):
-    feature = programmed.document.feature("rib-01")
-    change = programmed.docks.features.menu(feature).actions()[0].menu()
+def test_the_feature_menu_changes_a_kind(tray, idle):
+    feature = tray.document.feature("rib-01")
+    change = tray.docks.features.menu(feature).actions()[0].menu()
     next(a for a in change.actions() if a.text() == "Island").trigger()
-    idle(programmed)
-    assert programmed.document.feature("rib-01").kind == "island"
-    assert programmed.panels["size"].state == "stale"
+    idle(tray)
+    assert tray.document.feature("rib-01").kind == "island"
+    assert tray.panels["size"].state == "stale"
 
 
-def test_an_operation_dropped_on_another_is_cut_before_it(programmed, idle):
-    programmed.docks.process.tree.dropped.emit("op-06", "op-04")
-    idle(programmed)
-    order = [o.id for o in programmed.document.session.process.operations]
+def test_an_operation_dropped_on_another_is_cut_before_it(tray, idle):
+    tray.docks.process.tree.dropped.emit("op-06", "op-04")
+    idle(tray)
+    order = [o.id for o in tray.document.session.process.operations]
     assert order.index("op-06") < order.index("op-04")
 
 
-def test_a_wrong_order_is_refused_in_a_message(programmed, idle):
-    before = programmed.document.session
-    programmed.docks.process.tree.dropped.emit("op-03", "op-02")
-    assert programmed.document.session is before
-    assert "op-03 must come after op-02" in programmed.viewport.notice.text
+def test_a_wrong_order_is_refused_in_a_message(tray, idle):
+    before = tray.document.session
+    tray.docks.process.tree.dropped.emit("op-03", "op-02")
+    assert tray.document.session is before
+    assert "op-03 must come after op-02" in tray.viewport.notice.text
 
 
-def test_an_operations_own_setting_is_an_edit_by_hand(programmed, idle):
-    programmed.document.selection.select_operation("op-02")
-    programmed.docks.properties.form.field("fake.rough.stepover").setValue(0.25)
-    idle(programmed)
-    operation = programmed.document.operation("op-02")
+def test_an_operations_own_setting_is_an_edit_by_hand(tray, idle):
+    tray.document.selection.select_operation("op-02")
+    tray.docks.properties.form.field("fake.rough.stepover").setValue(0.25)
+    idle(tray)
+    operation = tray.document.operation("op-02")
     assert (operation.choices["fake.rough.stepover"], operation.by_hand) == (0.25, True)
 
 
@@ -153,44 +174,44 @@ def typed(field, words: str) -> None:
     QTest.keyClick(field, Qt.Key.Key_Return)
 
 
-def test_a_typed_feed_speed_and_tool_are_edits_by_hand_and_undo_takes_all_back(programmed, idle):
-    before = programmed.document.session
-    programmed.document.selection.select_operation("op-02")
+def test_a_typed_feed_speed_and_tool_are_edits_by_hand_and_undo_takes_all_back(tray, idle):
+    before = tray.document.session
+    tray.document.selection.select_operation("op-02")
     for name, words in (
         ("feed", "1234"),
         ("spindle", "5600"),
         ("tool", "AL3-regular D16 R3"),
     ):
-        typed(programmed.docks.properties.data_form.field(f"operation.{name}"), words)
-        idle(programmed)
-    changed = programmed.document.operation("op-02")
+        typed(tray.docks.properties.data_form.field(f"operation.{name}"), words)
+        idle(tray)
+    changed = tray.document.operation("op-02")
     assert (changed.data.feed, changed.data.spindle) == (1234.0, 5600.0)
     assert changed.tool.name == "AL3-regular D16 R3" and changed.by_hand
-    assert programmed.document.history.undo_label == "op-02: Tool AL3-regular D16 R3"
+    assert tray.document.history.undo_label == "op-02: Tool AL3-regular D16 R3"
     for _ in range(3):
-        programmed.registry.run("edit.undo")
-        idle(programmed)
-    assert programmed.document.session is before
+        tray.registry.run("edit.undo")
+        idle(tray)
+    assert tray.document.session is before
 
 
 def test_a_feed_that_the_machine_does_not_have_is_refused_and_the_field_shows_the_old_one(
-    programmed, idle
+    tray, idle
 ):
-    before = programmed.document.session
-    programmed.document.selection.select_operation("op-02")
-    field = programmed.docks.properties.data_form.field("operation.feed")
+    before = tray.document.session
+    tray.document.selection.select_operation("op-02")
+    field = tray.docks.properties.data_form.field("operation.feed")
     typed(field, "90000")
-    idle(programmed)
-    assert programmed.document.session is before
-    assert "feeds at most 20000 mm/min" in programmed.viewport.notice.text
+    idle(tray)
+    assert tray.document.session is before
+    assert "feeds at most 20000 mm/min" in tray.viewport.notice.text
     assert field.value() == round(before.process.operation("op-02").data.feed, 1)
 
 
-def test_a_click_on_a_finding_selects_what_it_names(programmed):
-    table = programmed.docks.messages.table
+def test_a_click_on_a_finding_selects_what_it_names(tray):
+    table = tray.docks.messages.table
     row = next(r for r in range(table.rowCount()) if "leans" in table.item(r, 1).text())
     QTest.mouseClick(table.viewport(), LEFT, pos=table.visualItemRect(table.item(row, 1)).center())
-    assert programmed.document.selection.current.id == "pocket-01"
+    assert tray.document.selection.current.id == "pocket-01"
 
 
 def test_a_message_about_many_faces_names_eight_and_selects_all(opened):
@@ -208,33 +229,33 @@ def shown_messages(window) -> list[str]:
     return [table.item(r, 1).text() for r in range(table.rowCount()) if not table.isRowHidden(r)]
 
 
-def test_messages_are_filtered_by_what_they_name_and_by_how_grave_they_are(programmed):
-    dock = programmed.docks.messages
-    everything = shown_messages(programmed)
+def test_messages_are_filtered_by_what_they_name_and_by_how_grave_they_are(tray):
+    dock = tray.docks.messages
+    everything = shown_messages(tray)
     QTest.keyClicks(dock.filter.words, "pocket-02 CUTTER")
-    assert shown_messages(programmed) == ["two pockets could share a cutter"]
+    assert shown_messages(tray) == ["two pockets could share a cutter"]
     assert dock.filter.count.text() == f"1 of {len(everything)}"
     dock.filter.words.clear()
     dock.filter.severity.setCurrentIndex(2)
-    assert "two pockets could share a cutter" not in shown_messages(programmed)
-    assert "a wall leans over the floor" in shown_messages(programmed)
+    assert "two pockets could share a cutter" not in shown_messages(tray)
+    assert "a wall leans over the floor" in shown_messages(tray)
     dock.filter.severity.setCurrentIndex(0)
-    assert shown_messages(programmed) == everything and dock.filter.count.text() == ""
+    assert shown_messages(tray) == everything and dock.filter.count.text() == ""
 
 
-def test_a_click_on_a_filtered_message_still_goes_to_what_it_names(programmed):
-    dock = programmed.docks.messages
+def test_a_click_on_a_filtered_message_still_goes_to_what_it_names(tray):
+    dock = tray.docks.messages
     QTest.keyClicks(dock.filter.words, "leans")
     row = next(r for r in range(dock.table.rowCount()) if not dock.table.isRowHidden(r))
     at = dock.table.visualItemRect(dock.table.item(row, 1)).center()
     QTest.mouseClick(dock.table.viewport(), LEFT, pos=at)
-    assert programmed.document.selection.current.id == "pocket-01"
+    assert tray.document.selection.current.id == "pocket-01"
 
 
-def test_selected_messages_are_copied_as_lines(programmed, qtbot):
-    dock = programmed.docks.messages
-    programmed.activateWindow()  # a screen without a window manager gives the keyboard to no window by itself
-    qtbot.waitUntil(programmed.isActiveWindow)
+def test_selected_messages_are_copied_as_lines(tray, qtbot):
+    dock = tray.docks.messages
+    tray.activateWindow()  # a screen without a window manager gives the keyboard to no window by itself
+    qtbot.waitUntil(tray.isActiveWindow)
     QTest.keyClicks(dock.filter.words, "leans")
     row = next(r for r in range(dock.table.rowCount()) if not dock.table.isRowHidden(r))
     dock.table.selectRow(row)
@@ -288,10 +309,10 @@ def test_a_saved_project_opens_again_and_is_recent(programmed, tmp_path, idle, m
     assert preferences.recent()[0] == str(path)
 
 
-def test_programs_are_written_into_a_folder(programmed, tmp_path, idle, monkeypatch):
-    monkeypatch.setattr(programmed.dialogs, "folder", lambda: str(tmp_path / "out"))
-    programmed.registry.run("file.write")
-    idle(programmed)
+def test_programs_are_written_into_a_folder(tray, tmp_path, idle, monkeypatch):
+    monkeypatch.setattr(tray.dialogs, "folder", lambda: str(tmp_path / "out"))
+    tray.registry.run("file.write")
+    idle(tray)
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["tray.S1.nc"]
 
 
@@ -338,9 +359,9 @@ def test_the_time_of_areas_stands_below_the_balance_of_operations(
     qtbot.waitUntil(lambda: "measured on the toolpaths" in areas.gain.text(), timeout=20000)
 
 
-def test_a_panel_has_no_areas_to_be_timed(programmed):
-    programmed.panels["optimize"].fold(False)
-    assert not programmed.views["surface"].areas.isVisible()
+def test_a_panel_has_no_areas_to_be_timed(tray):
+    tray.panels["optimize"].fold(False)
+    assert not tray.views["surface"].areas.isVisible()
 
 
 def test_a_failed_verdict_names_the_files_that_must_not_run(
@@ -361,9 +382,9 @@ def test_a_failed_verdict_names_the_files_that_must_not_run(
     assert "tray.S1.REJECTED.nc" in window.viewport.notice.text
 
 
-def test_a_passed_verdict_names_no_files(programmed):
-    programmed.panels["generate"].fold(False)
-    assert not programmed.panels["generate"].rejected.isVisible()
+def test_a_passed_verdict_names_no_files(tray):
+    tray.panels["generate"].fold(False)
+    assert not tray.panels["generate"].rejected.isVisible()
 
 
 def test_a_message_keeps_the_case_of_a_files_name(make_window, part_file, idle):
@@ -375,16 +396,16 @@ def test_a_message_keeps_the_case_of_a_files_name(make_window, part_file, idle):
     assert window.viewport.notice.text == "tray.step: parts of this family are not planned yet"
 
 
-def test_a_program_of_an_earlier_plan_is_marked_as_stale(programmed, idle):
-    programmed.show_dock("code")
-    assert not programmed.docks.code.stale.isVisible()
-    programmed.document.selection.select_operation("op-02")
-    programmed.registry.run("edit.suppress")
-    idle(programmed)
-    assert programmed.docks.code.stale.isVisible()
-    programmed.registry.run("edit.undo")
-    idle(programmed)
-    assert not programmed.docks.code.stale.isVisible()
+def test_a_program_of_an_earlier_plan_is_marked_as_stale(tray, idle):
+    tray.show_dock("code")
+    assert not tray.docks.code.stale.isVisible()
+    tray.document.selection.select_operation("op-02")
+    tray.registry.run("edit.suppress")
+    idle(tray)
+    assert tray.docks.code.stale.isVisible()
+    tray.registry.run("edit.undo")
+    idle(tray)
+    assert not tray.docks.code.stale.isVisible()
 
 
 def test_the_palette_runs_what_was_typed(opened, qtbot, idle):
@@ -431,72 +452,72 @@ def test_light_and_dark_change_and_are_remembered(window):
     assert window.theme.name == "light"
 
 
-def test_what_is_up_to_date_is_not_computed_again(programmed, idle):
-    before = programmed.document.session
-    programmed.document.program()
-    assert not programmed.document.is_busy and programmed.document.session is before
-    assert "up to date" in programmed.viewport.notice.text
+def test_what_is_up_to_date_is_not_computed_again(tray, idle):
+    before = tray.document.session
+    tray.document.program()
+    assert not tray.document.is_busy and tray.document.session is before
+    assert "up to date" in tray.viewport.notice.text
 
 
-def test_a_row_dragged_onto_another_moves_in_front_of_it(programmed, idle, qtbot):
-    tree, target = programmed.docks.process.tree, programmed.docks.process.item("op-04")
-    programmed.show_dock("process")
+def test_a_row_dragged_onto_another_moves_in_front_of_it(tray, idle, qtbot):
+    tree, target = tray.docks.process.tree, tray.docks.process.item("op-04")
+    tray.show_dock("process")
     qtbot.waitUntil(tree.isVisible)
-    tree.setCurrentItem(programmed.docks.process.item("op-06"))
+    tree.setCurrentItem(tray.docks.process.item("op-06"))
     at = tree.visualItemRect(target).topLeft() + QPoint(4, 2)
     tree.dropEvent(
         QDropEvent(
             QPointF(at), Qt.DropAction.MoveAction, QMimeData(), LEFT, Qt.KeyboardModifier.NoModifier
         )
     )
-    idle(programmed)
-    order = [o.id for o in programmed.document.session.process.operations]
+    idle(tray)
+    order = [o.id for o in tray.document.session.process.operations]
     assert order.index("op-06") == order.index("op-04") - 1
 
 
-def test_a_copy_of_an_operation_stands_behind_it_and_is_selected(programmed, idle):
-    document, before = programmed.document, programmed.document.session
+def test_a_copy_of_an_operation_stands_behind_it_and_is_selected(tray, idle):
+    document, before = tray.document, tray.document.session
     document.selection.select_operation("op-04")
-    programmed.registry.run("edit.copy")
-    idle(programmed)
+    tray.registry.run("edit.copy")
+    idle(tray)
     order = [o.id for o in document.session.process.operations]
     assert order[order.index("op-04") + 1] == "op-04-copy"
     assert document.selection.current.id == "op-04-copy"
-    assert programmed.docks.process.item("op-04-copy").isSelected()
+    assert tray.docks.process.item("op-04-copy").isSelected()
     # Of the copy alone, by its own entry of the menu, one more is made of the same.
-    menu = programmed.docks.process.menu(document.operation("op-04-copy"))
+    menu = tray.docks.process.menu(document.operation("op-04-copy"))
     next(a for a in menu.actions() if a.text() == "Copy op-04-copy").trigger()
-    idle(programmed)
+    idle(tray)
     assert document.selection.current.id == "op-04-copy-2"
     for _ in range(2):
-        programmed.registry.run("edit.undo")
+        tray.registry.run("edit.undo")
     assert document.session is before
 
 
-def test_an_operation_is_copied_to_another_feature_by_the_menu(programmed, idle):
-    document, before = programmed.document, programmed.document.session
+def test_an_operation_is_copied_to_another_feature_by_the_menu(tray, idle):
+    document, before = tray.document, tray.document.session
     id = next(o.id for o in before.process.operations if o.feature == "pocket-01")
-    menu = programmed.docks.process.menu(document.operation(id))
+    menu = tray.docks.process.menu(document.operation(id))
     (onto,) = (a.menu() for a in menu.actions() if a.text() == f"Copy {id} to")
     assert [a.text() for a in onto.actions()] == ["pocket-02", "pocket-03"]
     onto.actions()[1].trigger()
-    idle(programmed)
+    idle(tray)
     copy = document.operation(document.selection.current.id)
     assert (copy.feature, copy.copy_of) == ("pocket-03", id)
-    assert programmed.docks.process.item(copy.id).text(1) == "pocket-03"
-    programmed.registry.run("edit.undo")
+    assert tray.docks.process.item(copy.id).text(1) == "pocket-03"
+    tray.registry.run("edit.undo")
     assert document.session is before
 
 
-def test_the_listing_shows_the_selected_operations_motions(programmed, qtbot):
-    programmed.show_dock("listing")
-    programmed.document.selection.select_operation("op-02")
-    qtbot.waitUntil(lambda: programmed.docks.listing.toPlainText().startswith("setup S1"))
+def test_the_listing_shows_the_selected_operations_motions(tray, qtbot):
+    tray.show_dock("listing")
+    tray.document.selection.select_operation("op-02")
+    qtbot.waitUntil(lambda: tray.docks.listing.toPlainText().startswith("setup S1"))
 
 
-def test_the_program_text_is_shown(programmed, qtbot):
-    programmed.docks.code.parentWidget().raise_()
-    qtbot.waitUntil(lambda: "G0 X10." in programmed.docks.code.text.toPlainText())
+def test_the_program_text_is_shown(tray, qtbot):
+    tray.docks.code.parentWidget().raise_()
+    qtbot.waitUntil(lambda: "G0 X10." in tray.docks.code.text.toPlainText())
 
 
 def test_a_state_of_two_steps_is_the_one_that_asks_for_attention():
@@ -567,20 +588,20 @@ def test_a_message_has_the_room_that_the_columns_beside_it_do_not_need(window, q
     qtbot.waitUntil(lambda: table.columnWidth(1) > 0.5 * table.viewport().width())
 
 
-def test_the_fix_of_a_finding_is_applied_beside_it_and_undone(programmed, idle, qtbot):
-    document = programmed.document
+def test_the_fix_of_a_finding_is_applied_beside_it_and_undone(tray, idle, qtbot):
+    document = tray.document
     operation = document.session.process.operations[0].id
     fix = Fix(kind="drop", operation=operation, reason="verify.gouge")
     gouge = replace(error("verify.gouge", "a gouge", operation), fix=fix)
     before = document.session
     document.noticed.emit(gouge)
-    programmed.show_dock("messages")
-    table = programmed.docks.messages.table
-    row = programmed.docks.messages.findings.index(gouge)
+    tray.show_dock("messages")
+    table = tray.docks.messages.table
+    row = tray.docks.messages.findings.index(gouge)
     others = [r for r in range(table.rowCount()) if r != row]
     assert all(table.cellWidget(r, 5) is None for r in others)
     QTest.mouseClick(table.cellWidget(row, 5), LEFT)
-    idle(programmed)
+    idle(tray)
     assert document.session.process.operation(operation).suppressed
     assert document.states["verify"] == "stale"
     document.undo()
@@ -613,8 +634,8 @@ def test_an_operations_label_says_nothing_twice(id, kind, words):
     assert label(made) == words
 
 
-def test_operations_that_differ_at_their_ends_are_told_apart_in_the_panel(programmed):
-    table = programmed.panels["optimize"].table
+def test_operations_that_differ_at_their_ends_are_told_apart_in_the_panel(tray):
+    table = tray.panels["optimize"].table
     metrics = table.fontMetrics()
     room = metrics.horizontalAdvance("finish-local") - 1
     shown = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
@@ -43,6 +44,7 @@ def plainly(contact, tool, tips, axes, wanted):
     )
 
 
+@pytest.mark.examples(5)
 @settings(deadline=None, max_examples=15, phases=[Phase.explicit, Phase.generate])
 @given(rows=PLACES, tools=st.permutations(PLAIN), leans=st.booleans())
 def test_what_obstacles_remember_changes_no_answer(rows, tools, leans):
@@ -59,6 +61,7 @@ def test_what_obstacles_remember_changes_no_answer(rows, tools, leans):
         assert found.tolist() == plainly(CLOSED, tool, tips, axis, wanted).tolist()
 
 
+@pytest.mark.examples(15)
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
 @given(form=st.sampled_from(sorted(FORMS)), seed=st.integers(0, 2**32 - 1))
 def test_an_obstacle_stops_just_the_tools_that_it_is_deep_in(form, seed):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from pytest import approx
@@ -197,6 +198,7 @@ def paths(draw):
     )
 
 
+@pytest.mark.examples(12)
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
 @given(strip=strips(), form=st.sampled_from(sorted(FORMS)), path=paths())
 def test_the_deepest_of_a_random_block_is_within_the_bound_of_a_far_finer_search(strip, form, path):
@@ -214,6 +216,7 @@ def test_the_deepest_of_a_random_block_is_within_the_bound_of_a_far_finer_search
         assert measured == approx(expected, abs=tolerance.CONTACT_BOUND)
 
 
+@pytest.mark.examples(15)
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
 @given(
     form=st.sampled_from(sorted(FORMS)),
@@ -282,6 +285,7 @@ def _deepest(strip, move, parts, measured):
     return max(quick, *(sampled_depth(strip, move, p, rounds=14, grid=201, kept=20) for p in parts))
 
 
+@pytest.mark.examples(8)
 @settings(deadline=None, max_examples=25, phases=[Phase.explicit, Phase.generate])
 @given(form=st.sampled_from(sorted(FORMS)), seed=st.integers(0, 2**32 - 1))
 def test_cells_that_are_passed_over_hide_no_contact(form, seed):

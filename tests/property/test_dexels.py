@@ -94,6 +94,7 @@ def random_ends(seed, lean, aligned=True):
     )
 
 
+@pytest.mark.examples(3)
 @given(TOOLS, seeds, st.sampled_from([0.0, 0.02, 0.4]))
 @example("t-slot", 107, 0.4)  # A point 0.65 um under the tool at the end of its swing.
 @settings(max_examples=8, deadline=None)
@@ -102,6 +103,7 @@ def test_points_on_rays_are_gone_where_the_cutter_was_at_any_time(form, seed, le
     check_rays(FORMS[form], leaning_section(FORMS[form], tips, axes), rng)
 
 
+@pytest.mark.examples(2)
 @given(st.sampled_from(["flat", "bull", "t-slot"]), seeds)
 @settings(max_examples=4, deadline=None)
 def test_arcs_and_helices_about_any_axis_cut_what_they_pass(form, seed):
@@ -122,6 +124,7 @@ def test_arcs_and_helices_about_any_axis_cut_what_they_pass(form, seed):
     check_rays(FORMS[form], section, rng)
 
 
+@pytest.mark.examples(6)
 @given(st.sampled_from(["flat", "bull", "drill", "form"]), seeds)
 @settings(max_examples=20, deadline=None, phases=[Phase.explicit, Phase.generate])
 def test_a_tool_that_swings_within_a_span_takes_nothing_from_beyond_its_sweep(form, seed):

@@ -186,6 +186,7 @@ AT_A_JOINT = (
 """Ends with the edge of a holder, where its cone goes over into its cylinder, in a triangle: the cone is nearer than the cylinder."""
 
 
+@pytest.mark.examples(12)
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
 @given(form=st.sampled_from(sorted(FORMS)), move=ways(), triangles=TRIANGLES)
 @example(
@@ -286,6 +287,7 @@ def frames(draw):
     return Frame(draw(NEAR) * 10.0, x, z)
 
 
+@pytest.mark.examples(15)
 @settings(deadline=None, max_examples=40, phases=[Phase.explicit, Phase.generate])
 @given(
     form=st.sampled_from(sorted(FORMS)),

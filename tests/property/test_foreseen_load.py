@@ -12,6 +12,7 @@ import cadquery as cq
 import numpy as np
 import pytest
 
+from long_mark import mostly_long
 from samples import ball_shape, dome_on_a_plate_shape, written
 from seeded.pockets import random_panel
 from trunnion.model.session import Session
@@ -118,7 +119,7 @@ CURVED = (dome_on_a_plate_shape, ball_shape)
 
 
 @pytest.mark.timeout(600)
-@pytest.mark.parametrize("shape", CURVED)
+@pytest.mark.parametrize("shape", mostly_long(CURVED, ball_shape))
 def test_roughing_of_a_curved_part_is_foreseen_too(shape):
     found = ratios(roughed(shape))
     assert found and min(found.values()) >= NOT_LESS
@@ -131,11 +132,15 @@ def trough_shape() -> Any:
     return block.cut(trough.extrude(12.3, taper=-30.0)).val().wrapped
 
 
+QUICK_CURVED, EVERY_CURVED = (ball_shape, trough_shape), (*CURVED, trough_shape)
+
+
 @pytest.mark.timeout(600)
-def test_what_is_foreseen_of_curved_parts_at_full_width_is_near_what_is_measured():
+@pytest.mark.parametrize("shapes", mostly_long((QUICK_CURVED, EVERY_CURVED), QUICK_CURVED), ids=len)
+def test_what_is_foreseen_of_curved_parts_at_full_width_is_near_what_is_measured(shapes):
     found = [
         ratios(session)[p.operation]
-        for session in map(roughed, (*CURVED, trough_shape))
+        for session in map(roughed, shapes)
         for p in session.verdict.operations
         if p.engaged > FULL_TURN
     ]

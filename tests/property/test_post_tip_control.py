@@ -12,16 +12,16 @@ from hypothesis import strategies as st
 
 from five_axis import five_axis_case
 from leaning_paths import HEADER, again, path_of, program, standing, text_of
+from own_shop import own_shop
 from programs import FLAT_16, S1
 from trunnion import registry
 from trunnion.findings import BadInput, Refused
 from trunnion.model.motion.toolpath import Motion
 from trunnion.model.spindle import FeedMode
 from trunnion.post.settings import PostSettings
-from trunnion.shop import load_shop
 from trunnion.shop.kinematics import axes_of, rotary_solutions
 
-MACHINES = [m for m in load_shop().machines.values() if m.rotary]
+MACHINES = [m for m in own_shop().machines.values() if m.rotary]
 DIALECTS = ["sinumerik", "fanuc", "heidenhain"]
 TIP, AXIS = 1e-3, math.radians(1e-3)
 """mm and rad that a pose may be off, beside what decimals round: 1 um and a thousandth of a degree."""
@@ -84,6 +84,7 @@ def off(planned, read):
     )
 
 
+@pytest.mark.examples(5)
 @by_dialect
 @by_machine
 @settings(deadline=None, max_examples=15)

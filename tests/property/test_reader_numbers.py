@@ -6,6 +6,7 @@ import math
 import string
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -194,6 +195,7 @@ def check_judged(program: Program) -> None:
     assert verdict.outcome is Outcome.FAILED or not (stands or slow or far)
 
 
+@pytest.mark.examples(100)
 @settings(kept, max_examples=300)
 @given(st.one_of(inserted(), replaced()))
 def test_a_text_is_read_in_finite_numbers_or_refused_in_one_line(text):
@@ -206,6 +208,7 @@ def test_a_cl_text_is_read_in_finite_numbers_or_refused_in_one_line(text):
     understood("apt", text)
 
 
+@pytest.mark.examples(25)
 @settings(kept, max_examples=80)
 @given(cuts())
 def test_what_is_read_is_judged_in_finite_numbers(text):

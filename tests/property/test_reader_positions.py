@@ -144,6 +144,7 @@ def bodies(draw, letters):
     return "\n".join(lines)
 
 
+@pytest.mark.examples(40)
 @pytest.mark.parametrize("name", WORD_ADDRESS)
 @settings(deadline=None, max_examples=100)
 @given(body=bodies(["X", "Y", "Z"]), begins=st.sampled_from(["G1 X1. F100.\n", "G0 X1.\n", ""]))
@@ -151,6 +152,7 @@ def test_positions_of_three_axes_are_read_as_line_by_line(name, body, begins):
     same_motions(name, f"{STARTS[name]}{begins}{body}\nM30\n", {})
 
 
+@pytest.mark.examples(50)
 @pytest.mark.parametrize("name", ["fanuc", "sinumerik"])
 @settings(deadline=None, max_examples=150)
 @given(data=st.data(), begins=st.sampled_from(["G1 X1. F100.\n", "G0 X1.\n"]))

@@ -6,6 +6,7 @@ from math import radians, tan
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -64,6 +65,7 @@ def holes(draw: st.DrawFn) -> Hole:
 directions = st.tuples(*3 * [st.floats(-1.0, 1.0)]).filter(lambda v: np.linalg.norm(v) > 0.2)
 
 
+@pytest.mark.examples(5)
 @settings(deadline=None, max_examples=15)
 @given(
     st.lists(holes(), min_size=1, max_size=4),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
@@ -48,6 +49,7 @@ def agrees(form, section, points, bound):
     assert ((nearest == 1) == (left < most)).all() or form == "form"
 
 
+@pytest.mark.examples(10)
 @QUICK
 @given(
     form=st.sampled_from(sorted(EVERY_FORM)), start=tips(), end=tips(), axis=axes(), points=POINTS
@@ -56,6 +58,7 @@ def test_lines_come_as_near_as_a_finer_search_finds(form, start, end, axis, poin
     agrees(form, leaning_section(EVERY_FORM[form], [start, end], [axis, axis]), points, FIXED)
 
 
+@pytest.mark.examples(10)
 @QUICK
 @given(
     form=st.sampled_from(sorted(EVERY_FORM)),
@@ -73,6 +76,7 @@ def test_plunges_come_as_near_as_a_finer_search_finds(form, start, depth, axis, 
     )
 
 
+@pytest.mark.examples(10)
 @QUICK
 @given(
     form=st.sampled_from(sorted(EVERY_FORM)),
@@ -106,6 +110,7 @@ def test_arcs_and_helices_come_as_near_as_a_finer_search_finds(
     agrees(form, section, points, FIXED)
 
 
+@pytest.mark.examples(10)
 @QUICK
 @given(
     form=st.sampled_from(sorted(EVERY_FORM)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -56,6 +57,7 @@ def strays(rng, moves) -> float:
     return worst
 
 
+@pytest.mark.examples(40)
 @settings(max_examples=120, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from(["ball", "bull", "taper"]), st.floats(0.001, 0.6))
 def test_points_pass_a_turning_tool_as_its_spans_say(seed, form, turn):

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -105,6 +106,7 @@ def sessions(draw) -> Session:
     )
 
 
+@pytest.mark.examples(20)
 @settings(deadline=None, max_examples=60)
 @given(sessions(), st.binary(max_size=200))
 def test_a_session_comes_back_from_its_file_as_it_was(session, part):

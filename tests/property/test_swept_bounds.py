@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -45,6 +46,7 @@ def swept(rng, row, piece, arcs):
     return (1.0 - t) * start + t * end
 
 
+@pytest.mark.examples(20)
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from(sorted(EVERY_FORM)), st.booleans())
 def test_what_a_piece_sweeps_is_within_its_frustum(seed, form, turns):

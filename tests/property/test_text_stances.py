@@ -10,17 +10,17 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from leaning_paths import HEADER, lean, path_of, program, standing
+from own_shop import own_shop
 from programs import FLAT_16, S1
 from trunnion import registry
 from trunnion.findings import Refused
 from trunnion.model.material import leaning_axis
 from trunnion.post.settings import PostSettings
-from trunnion.shop import load_shop
 from trunnion.shop.rotary_angles import followed
 from trunnion.verify.machine.kinematics import axis_positions
 from trunnion.verify.motion import moves_of
 
-SHOP = load_shop()
+SHOP = own_shop()
 HEAD = SHOP.machine("Universal 1250")
 MACHINES = [m for m in SHOP.machines.values() if m.rotary]
 DIALECTS = ("sinumerik", "heidenhain")
@@ -81,6 +81,7 @@ def test_a_side_that_is_not_said_is_the_controls_choice():
 directions = st.tuples(st.floats(1.0, 100.0), st.floats(0.0, 360.0))
 
 
+@pytest.mark.examples(25)
 @settings(deadline=None)
 # At the end of an axis a written angle may be a hair beyond it: it is still within, not a whole turn away.
 @example("sinumerik", SHOP.machine("Trunnion 650"), [(30.0, 218.0)], [(1.0, 0.0), (1.0, 0.0)])

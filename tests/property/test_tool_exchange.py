@@ -86,6 +86,7 @@ def assumed(read: ReadTools, name: str) -> set[str]:
     return {l.field for l in read.losses if l.tool == name and l.kind is LossKind.ASSUMED}
 
 
+@pytest.mark.examples(30)
 @pytest.mark.parametrize(("name", "suffix"), FORMATS)
 @given(data=st.data())
 @settings(max_examples=100, deadline=None)
@@ -116,6 +117,7 @@ def test_a_tool_comes_back_but_for_exactly_what_is_listed(name, suffix, data):
     assert own <= found | unsaid | with_form, "a field is listed that came back as it was"
 
 
+@pytest.mark.examples(8)
 @pytest.mark.parametrize(("name", "suffix"), FORMATS)
 @given(tools=st.lists(cutters(), min_size=2, max_size=5))
 @settings(max_examples=30, deadline=None)
@@ -133,6 +135,7 @@ def test_a_library_comes_back_in_its_order_with_names_that_differ(name, suffix, 
     assert twice <= {l.tool for l in done.losses if l.field in ("name", WHOLE_TOOL)}
 
 
+@pytest.mark.examples(8)
 @given(tools=st.lists(cutters(), min_size=1, max_size=4))
 @settings(max_examples=25, deadline=None)
 def test_catalogue_files_give_back_the_tools_that_they_are_written_of(tools):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -48,6 +49,7 @@ def lowered(path: Toolpath) -> np.ndarray:
     return np.vstack([starts[below, :2], ends[below, :2]])
 
 
+@pytest.mark.examples(4)
 @FEW
 @given(pockets(), cutters, st.floats(2.0, 12.0))
 def test_roughing_stays_in_its_room_clears_it_and_never_crosses_material_at_rapid(
@@ -68,6 +70,7 @@ def test_roughing_stays_in_its_room_clears_it_and_never_crosses_material_at_rapi
     assert milled.crashes == []
 
 
+@pytest.mark.examples(5)
 @FEW
 @given(pockets(), cutters)
 def test_floor_and_wall_stay_in_their_room(plan: Region, cutter: tuple[float, float]) -> None:

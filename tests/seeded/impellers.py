@@ -203,9 +203,9 @@ def _sharp(seed: int) -> SeededImpeller:
     )
 
 
-def small_impeller(*, holes: int = 0, diameter: float = 5.0) -> Any:
+def small_impeller(*, holes: int = 0, diameter: float = 5.0, between: float = 0.0) -> Any:
     """Return the solid (OCP, mm) of a small open wheel that is quickly planned: six low blades with sharp roots, its axis z, and so many
-    blind holes of a diameter (mm) in its back."""
+    blind holes of a diameter (mm) in its back, with as many of another one between them where that is given."""
     radius, count = 20.0, 6
     height, outlet = 0.65 * radius, 0.14 * radius
     hub = _meridian((0.26 * radius, height), (0.28 * radius, 0.12 * height), (1.02 * radius, 0.0))
@@ -218,6 +218,9 @@ def small_impeller(*, holes: int = 0, diameter: float = 5.0) -> Any:
     wheel = body.fuse(*(one.rotate(*AXIS, 360.0 * k / count) for k in range(count)))
     bore = cq.Solid.makeCylinder(2.5, 4.0 * radius, cq.Vector(0, 0, -2.0 * radius))
     bolts = _bolts(holes, 0.62 * radius, 0.5 * diameter, -3.0)
+    if between:
+        others = _bolts(holes, 0.62 * radius, 0.5 * between, -3.0)
+        bolts = [*bolts, *(b.rotate(*AXIS, 180.0 / holes) for b in others)]
     return wheel.cut(bore, *bolts).Solids()[0].wrapped
 
 

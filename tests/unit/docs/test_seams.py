@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import trunnion
@@ -67,9 +68,16 @@ def modules() -> Iterator[tuple[str, Path]]:
                 yield f"{house.name}/{name}.py", path
 
 
+@cache
+def nodes_of(path: Path) -> list[ast.AST]:
+    """Return the constants and imports of a module."""
+    kinds = (ast.Constant, ast.ImportFrom, ast.Import)
+    return [n for n in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(n, kinds)]
+
+
 def words_in(path: Path) -> Iterator[str]:
     """Give the texts of a module that are whole constants, and what stands up to the first dot of dotted ones (`plane.`)."""
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for node in nodes_of(path):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             yield node.value
             head, dot, _ = node.value.partition(".")
@@ -79,7 +87,7 @@ def words_in(path: Path) -> Iterator[str]:
 
 def imported(path: Path) -> Iterator[str]:
     """Give the modules that a module imports, as paths."""
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for node in nodes_of(path):
         if isinstance(node, ast.ImportFrom) and node.module:
             yield node.module.replace(".", "/")
         elif isinstance(node, ast.Import):

@@ -118,6 +118,7 @@ def plainly_flipped(points, normals, triangles, face, measure):
     return np.array(triangles)
 
 
+@pytest.mark.examples(30)
 @pytest.mark.parametrize("measure", [in_mm, wavy])
 @settings(deadline=None)
 @given(seed=st.integers(0, 10_000))

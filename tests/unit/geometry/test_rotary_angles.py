@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from own_shop import own_shop
 from trunnion.findings import Refused
 from trunnion.shop import load_shop
 from trunnion.shop.kinematics import WorkPosition
 from trunnion.shop.rotary_angles import followed
 
-TRUNNION = load_shop().machines["Trunnion 650"]
+TRUNNION = own_shop().machines["Trunnion 650"]
 
 
 def place(turns):

@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from long_mark import mostly_long
 from parts import PARTS, needs_parts
 from samples import ball_shape, block_with_pocket_shape, box_shape, read
 from trunnion import tolerance
@@ -89,7 +90,7 @@ def vase_shape():
     return body.cut(turned(4.0, [(9.0, 7.0), (6.0, 15.0), (12.0, 31.0)], 31.0)).val().wrapped
 
 
-@pytest.mark.parametrize("suffix", ["step", "igs"])
+@pytest.mark.parametrize("suffix", mostly_long(["step", "igs"], "step"))
 def test_faces_that_meet_themselves_in_a_seam_are_closed_there(suffix):
     part = read(vase_shape(), suffix)
     skin = skin_of(part, WORLD, 0.01)

@@ -20,6 +20,7 @@ from flat_parts import (
     rounded,
     stepped_panel,
 )
+from own_shop import own_shop
 from trunnion.findings import Refused
 from trunnion.geometry.frame import WORLD
 from trunnion.model.feature import FaceRole, Feature, Recognition
@@ -28,9 +29,8 @@ from trunnion.plan.prismatic.drive import drive_of, foot_clearance
 from trunnion.plan.prismatic.regions import SetupSpace
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 D20, D10 = (next(t for t in SHOP.tools if t.name == f"AL3-regular D{d} R3") for d in (20, 10))
 CORNERS = (4 - math.pi) * 64
 """What four corners of radius 8 take from a rectangle."""

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from own_shop import own_shop
 from parts import ROOT
 from trunnion.findings import BadInput
 from trunnion.model.tool.lead import basic_minor_diameter
@@ -18,7 +19,7 @@ from trunnion.settings import digest
 from trunnion.shop import load_shop
 from trunnion.verify.cutter import lowest_height, outline_of
 
-SHOP = load_shop()
+SHOP = own_shop()
 TOOLS = {t.name: t for t in SHOP.tools}
 REAMER = TOOLS["RE-H7 D8"]
 TAP = TOOLS["TAP-B M6x1"]

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pytest import approx
 
+from own_shop import own_shop
 from parts import ROOT
 from trunnion.findings import BadInput
 from trunnion.model.tool.lead import basic_minor_diameter
@@ -24,7 +25,7 @@ from trunnion.model.tool.thread_mill import (
 from trunnion.shop import load_shop
 from trunnion.verify.cutter import lowest_height
 
-SHOP = load_shop()
+SHOP = own_shop()
 TOOLS = {t.name: t for t in SHOP.tools}
 COMB, SINGLE = TOOLS["TM-C D6.3x1"], TOOLS["TM-S D12 P1-2.5"]
 MILLS = [t for t in SHOP.tools if t.form == "thread-mill"]

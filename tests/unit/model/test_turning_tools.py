@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from own_shop import own_shop
 from trunnion.findings import BadInput
 from trunnion.model.tool import CORNERS, Insert, TurningTool
 from trunnion.post.header import tool_line
 from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 CNMG = Insert(
     designation="CNMG120408", inscribed_circle=12.7, thickness=4.76, nose_radius=0.8, grade="P25"
 )

@@ -37,6 +37,7 @@ def frame_along(z: tuple[float, ...], origin: tuple[float, ...] = (0.0, 0.0, 0.0
     return Frame(np.array(origin), x, np.array(z) / np.linalg.norm(z))
 
 
+@pytest.mark.examples(10)
 @settings(max_examples=30, deadline=None)
 @given(z=DIRECTIONS, origin=st.tuples(*[st.floats(-1e3, 1e3)] * 3))
 def test_a_rod_reaches_as_far_as_its_rims_say(
@@ -51,6 +52,7 @@ def test_a_rod_reaches_as_far_as_its_rims_say(
         assert high[axis] == pytest.approx(ends.max() + radius, abs=2.0 * tolerance.COINCIDENT)
 
 
+@pytest.mark.examples(3)
 @settings(max_examples=8, deadline=None)
 @given(z=DIRECTIONS)
 def test_a_splines_box_holds_its_triangles_and_is_no_farther_off_than_these(

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import samples
+from long_mark import mostly_long
 from seeded.leaning_panels import leaning_panel
 from seeded.plates import plate
 from trunnion import tolerance
@@ -136,7 +137,7 @@ def test_a_turned_part_is_cut_the_same_in_its_own_frame(
     assert part.section(frame, 9.0).pieces[0].holes[0].n_segments == 8
 
 
-@BOTH
+@pytest.mark.parametrize("suffix", mostly_long(["step", "igs"], "step"))
 def test_sections_added_up_are_the_volume(suffix: str) -> None:
     part = samples.read(samples.two_pockets_and_a_rib_shape(), suffix)
     heights = (np.arange(200) + 0.5) * 0.1

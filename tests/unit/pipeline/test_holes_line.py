@@ -14,6 +14,7 @@ import pytest
 from pytest import approx
 
 from holed import hole, plate, with_holes
+from long_mark import mostly_long
 from trunnion.model.motion.cycle import CycleKind
 from trunnion.model.session import Session
 from trunnion.model.verdict import Outcome
@@ -125,7 +126,7 @@ STEPPED = (
 )
 
 
-@pytest.mark.parametrize("dialect", ["linuxcnc", "apt"])
+@pytest.mark.parametrize("dialect", mostly_long(["linuxcnc", "apt"], "linuxcnc"))
 def test_counterbores_flat_floors_and_milled_holes_are_proven(dialect):
     session = proven(fixed(STEPPED), ("post.dialect", dialect))[1]
     kinds = {o.kind for o in session.process.operations}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
 import subprocess
 import sys
@@ -10,7 +12,8 @@ from types import SimpleNamespace
 import pytest
 from PIL import Image
 
-from own_packages import environment
+from own_packages import environment, with_own_packages
+from trunnion.cli.main import main
 from turned_discs import turned_disc
 
 COMMAND = "from trunnion.cli.main import run; run()"
@@ -26,6 +29,14 @@ def trunnion(*arguments: str) -> subprocess.CompletedProcess[str]:
         env=environment(),
         check=False,
     )
+
+
+def said_here(*arguments: str) -> SimpleNamespace:
+    """Return what the command line says in this process, where it finds the package too."""
+    out, err = io.StringIO(), io.StringIO()
+    with with_own_packages(), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = main(list(arguments))
+    return SimpleNamespace(returncode=code, stdout=out.getvalue(), stderr=err.getvalue())
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +104,7 @@ def test_settings_of_the_package_are_listed_and_checked_like_ours(disc):
     listed = {s["key"]: s for s in json.loads(trunnion("settings", "--json").stdout)}
     assert listed["disc.bevel.below"]["unit"] == "mm"
     assert {"turner", "kestrel"} <= set(listed["post.dialect"]["choices"])
-    said = trunnion("info", str(disc.file), "--set", "disc.bevel.below=99")
+    said = said_here("info", str(disc.file), "--set", "disc.bevel.below=99")
     assert said.returncode == 2
     wrong = "Below the bevel (disc.bevel.below) must be from 0 to 10 mm; got 99"
     assert said.stderr.strip() == f"trunnion: {wrong}"
@@ -105,7 +116,7 @@ def test_its_planner_checks_the_cutter_rules_of_a_shops_own_plan(disc, tmp_path)
         '["Discs, by laser"]\ntitle = "Discs"\nfamily = "turned_disc"\nstage = [{ name = "burn", kind = "face", '
         'strategy = "plane.face", on = ["disc_end"], cutter = "laser", finish = true, rule = "quick" }]\n'
     )
-    said = trunnion("route", str(disc.file), "--user-folder", str(tmp_path))
+    said = said_here("route", str(disc.file), "--user-folder", str(tmp_path))
     assert said.returncode == 2
     known = "cutter must be one of end mill, bevel; got 'laser'"
     assert f"typical plan Discs, by laser, stage burn: {known}" in said.stderr

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from long_mark import mostly_long
 from pitted import pitted_block
 from releases import assert_released
 from seeded.pitted_panels import pitted_panel
@@ -16,7 +17,7 @@ from trunnion.pipeline.proof.posted_programs import program_of, prove_programs
 from trunnion.progress import NO_PROGRESS
 
 
-@pytest.mark.parametrize("seed", [0, 6])
+@pytest.mark.parametrize("seed", mostly_long((0, 6), 0))
 def test_random_pits_are_cut_without_a_gouge(seed, tmp_path):
     part = pitted_panel(seed)
     engine = Engine()

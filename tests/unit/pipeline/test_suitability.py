@@ -51,7 +51,7 @@ def test_a_wheel_with_twisted_blades_is_an_impeller(seed: int) -> None:
     assert found.suits.reason.startswith(f"{made.count} blades stand evenly about an axis, ")
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", mostly_long(range(3), 0))
 def test_a_thin_shell_with_bosses_is_a_casing(seed: int) -> None:
     found = best(graph_of(seed, round_parts.shell)[0])
     assert (found.name, found.served) == ("casing", True)
@@ -103,7 +103,7 @@ def test_a_random_panel_is_a_panel_by_far(seed: int, suffix: str) -> None:
     assert SurfaceFamily().suits(graph).score < 0.25
 
 
-@pytest.mark.parametrize("seed", mostly_long(range(12), 0, 2, 9))
+@pytest.mark.parametrize("seed", mostly_long(range(12), 0))
 def test_a_random_panel_with_leaning_walls_and_curved_floors_is_a_panel(seed: int) -> None:
     first, second, *_ = ratings(samples.read(leaning_panel(seed).shape).graph())
     assert first.name == "panel" and first.suits.score > second.suits.score

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from holed import HIGH, feature, hole
+from own_shop import own_shop
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.feature import Feature, Recognition
@@ -24,9 +25,8 @@ from trunnion.plan.holes.demand import (
     with_demand,
 )
 from trunnion.plan.holes.hole import bore_start, hole_in, is_plain_through, thread_of
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 WIDER = {"counterbore_diameter": 18.0, "counterbore_depth": 6.0}
 
 

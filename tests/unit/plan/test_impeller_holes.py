@@ -12,24 +12,50 @@ from releases import assert_released
 from seeded.impellers import small_impeller
 from subjects import WHEEL
 from trunnion.findings import Severity
+from trunnion.model.operation import Operation
 from trunnion.model.session import Session
 from trunnion.pipeline import Engine
 
 HOLES = 3
+TINY, ODD = 1.0, 3.374
+"""Diameters in mm: no end mill gets into the one, no drill has the other."""
 
 
 @cache
-def bolted(diameter: float = 5.0) -> tuple[Engine, Session]:
+def bolted(diameter: float = 5.0, between: float = 0.0) -> tuple[Engine, Session]:
     """Return an engine with a small wheel that has blind holes in its back, and its session with features."""
     engine = Engine()
-    shape = small_impeller(holes=HOLES, diameter=diameter)
+    shape = small_impeller(holes=HOLES, diameter=diameter, between=between)
     session = engine.open(samples.written(shape, name=f"bolted-wheel-{diameter:g}"))
     return engine, engine.run(engine.with_choices(session, WHEEL), until="recognize")
 
 
-def test_blind_holes_in_the_back_are_made_with_the_wheel_turned_over():
+@cache
+def routed() -> Session:
+    """Return the session of the wheel with holes of 5 mm, with its route."""
     engine, session = bolted()
-    process = engine.run(session, until="route").process
+    return engine.run(session, until="route")
+
+
+@cache
+def odd_ones_routed() -> Session:
+    """Return the session of a wheel with tiny and odd holes in its back, with its route."""
+    engine, session = bolted(TINY, ODD)
+    return engine.run(session, until="route")
+
+
+def on_holes_of(session: Session, diameter: float) -> tuple[set[str], list[Operation]]:
+    """Return the holes of a diameter, and the operations on them."""
+    holes = {
+        f.id
+        for f in session.recognition.of_kind("hole")
+        if f.sizes["diameter"] == pytest.approx(diameter, abs=1e-3)
+    }
+    return holes, [o for o in session.process.operations if holes & set(o.all_features)]
+
+
+def test_blind_holes_in_the_back_are_made_with_the_wheel_turned_over():
+    session, process = routed(), routed().process
     holes = session.recognition.of_kind("hole")
     assert len(holes) == HOLES
     on_holes = [o for o in process.operations if "hole" in o.feature]
@@ -54,8 +80,7 @@ def test_blind_holes_in_the_back_are_made_with_the_wheel_turned_over():
 
 
 def test_drills_take_their_speed_and_feed_from_the_table_of_drilling():
-    engine, session = bolted()
-    process = engine.run(session, until="route").process
+    process = routed().process
     (drill,) = [o for o in process.operations if o.kind == "drill"]
     assert any("drilling" in rule for rule in drill.data.rules)
     assert drill.data.plunge_feed == drill.data.feed
@@ -72,23 +97,22 @@ def test_holes_are_spotted_first_where_the_shop_wants_that():
 
 
 def test_a_flat_floor_that_no_end_mill_gets_at_keeps_the_point_of_its_drill():
-    engine, session = bolted(1.0)
-    process = engine.run(session, until="route").process
-    assert [o.kind for o in process.operations if "hole" in o.feature] == ["drill"]
+    session = odd_ones_routed()
+    holes, operations = on_holes_of(session, TINY)
+    assert len(holes) == HOLES and [o.kind for o in operations] == ["drill"]
     # One warning for all that have the same reason.
-    (told,) = [f for f in process.findings if f.code == "route.no-cutter"]
+    (told,) = [f for f in session.process.findings if f.code == "route.no-cutter"]
     assert told.severity is Severity.WARNING and "hole floors" in told.text
-    assert {f.id for f in session.recognition.of_kind("hole")} <= set(told.where)
+    assert holes <= set(told.where)
 
 
 def test_a_hole_that_no_drill_has_the_diameter_of_is_milled_by_a_small_end_mill():
     """A random wheel was refused for holes of D 3.374: the smallest end mill was one of 4 mm."""
-    engine, session = bolted(3.374)
-    process = engine.run(session, until="route").process
-    (mill,) = [o for o in process.operations if "hole" in o.feature]
+    session = odd_ones_routed()
+    _, (mill,) = on_holes_of(session, ODD)
     assert (mill.kind, mill.setup, len(mill.all_features)) == ("hole_mill", "S2", HOLES)
-    assert mill.cutter.diameter <= 0.8 * 3.374 and mill.cutter.form == "flat"
-    shop = engine.context_of(session).shop
+    assert mill.cutter.diameter <= 0.8 * ODD and mill.cutter.form == "flat"
+    shop = bolted(TINY, ODD)[0].context_of(session).shop
     # What is for holes alone cuts nothing else.
     small = shop.tools_for("N", "hole_mill")
     assert small and not {t.name for t in small} & {

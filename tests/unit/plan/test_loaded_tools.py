@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from flat_parts import operation
+from own_shop import own_shop
 from programs import BULL_10, FLAT_16, S1, S2
 from samples import block_with_pocket
 from trunnion.findings import BadInput, Severity, error
@@ -14,11 +15,10 @@ from trunnion.model.process import ProcessTree
 from trunnion.pipeline import Engine
 from trunnion.plan.loaded_tools import CODE, loaded_findings, planning_shop
 from trunnion.plan.process import with_tool_numbers
-from trunnion.shop import load_shop
 from trunnion.shop.crib import Crib, CribTool, tools_listed
 from trunnion.store.tool_crib import put_tool, set_wear
 
-SHOP = load_shop()
+SHOP = own_shop()
 MILL, LATHE = "Mill 1200", "Vertical lathe 600"
 ONLY = {"route.only_in_machine": True}
 DRILL = next(t for t in SHOP.tools if t.name == "DR-S D8")

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from own_shop import own_shop
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Box, Revolved
@@ -18,9 +19,8 @@ from trunnion.plan.contract import planner_for
 from trunnion.plan.machine_choice import machine_for, takes
 from trunnion.plan.setups import SetupSettings
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 LYING = math.radians(90.0)
 UPRIGHT = 0.0
 ASKEW = Frame(np.array([3.0, -2.0, 7.0]), np.array([0.8, 0.6, 0.0]), np.array([0.36, -0.48, 0.8]))

@@ -9,6 +9,7 @@ import pytest
 from pytest import approx
 
 from flat_parts import operation
+from own_shop import own_shop
 from trunnion.findings import BadInput
 from trunnion.geometry.frame import WORLD
 from trunnion.model.process import ProcessTree
@@ -19,9 +20,8 @@ from trunnion.plan.cutting.power import cutting_power
 from trunnion.plan.freeform.keys import EARLIER
 from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 MATERIAL, MACHINE = SHOP.material("EN AW-7075"), SHOP.machine("Mill 1200")
 LIMITS = choose(CuttingSettings, {})
 

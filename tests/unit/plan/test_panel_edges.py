@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from flat_parts import MILL, blank_of, panel
+from own_shop import own_shop
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature
@@ -16,9 +17,8 @@ from trunnion.plan.panel.edges import lost_on_edges, number_on_edge, with_edges
 from trunnion.plan.setups import SetupSettings, level_direction, make_setups, on_edge
 from trunnion.plan.setups.flip import turn_words
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 
-SHOP, SETTINGS = load_shop(), choose(SetupSettings, MILL)
+SHOP, SETTINGS = own_shop(), choose(SetupSettings, MILL)
 SIDES = [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.6, 0.8, 0.0)]
 
 

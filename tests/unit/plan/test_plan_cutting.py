@@ -9,6 +9,7 @@ import pytest
 from pytest import approx
 
 from flat_parts import operation
+from own_shop import own_shop
 from trunnion.geometry.frame import WORLD
 from trunnion.model.process import ProcessTree
 from trunnion.model.setup import Setup
@@ -33,9 +34,8 @@ from trunnion.plan.cutting.milling import (
 from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.power import cutting_power
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 ALUMINIUM, MACHINE, DEFAULT = (
     SHOP.material("EN AW-7075"),
     SHOP.machine("Mill 1200"),

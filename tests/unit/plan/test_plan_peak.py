@@ -11,6 +11,7 @@ import pytest
 from pytest import approx
 
 from flat_parts import operation
+from own_shop import own_shop
 from samples import two_pockets_and_a_rib
 from trunnion import registry
 from trunnion.findings import Severity
@@ -26,11 +27,10 @@ from trunnion.plan.cutting.optimize import balance
 from trunnion.plan.cutting.peak import LEAST_SHARE, overloads
 from trunnion.plan.cutting.power import cutting_power
 from trunnion.settings import choose, digest
-from trunnion.shop import load_shop
 from trunnion.toolpath.contract import strategy
 from trunnion.toolpath.motion.engagement import corner_width, segment, step_width
 
-SHOP = load_shop()
+SHOP = own_shop()
 ALUMINIUM = SHOP.material("EN AW-7075")
 TABLES = {"optimize.data": "handbook"}
 SETUP = Setup(name="S1", frame=WORLD, work_offset="G54", clearance=20.0, machine="Mill 1200")

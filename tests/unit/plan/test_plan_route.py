@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from flat_parts import MILL, blank_of, narrow_panel, open_panel, panel, stepped_panel
+from own_shop import own_shop
 from trunnion.findings import Severity
 from trunnion.model.blank import Box
 from trunnion.model.feature import FaceRole, Feature
@@ -16,9 +17,8 @@ from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.plan.tool_choice import SLENDER, without_slender
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 
 
 def route(made, *, blank=None, **words):

@@ -8,15 +8,15 @@ import numpy as np
 from pytest import approx
 
 from flat_parts import MILL, blank_of, panel
+from own_shop import own_shop
 from trunnion.geometry.frame import WORLD, Frame
 from trunnion.model.blank import Revolved
 from trunnion.model.feature import Feature
 from trunnion.plan.blank import BlankSettings, make_blank
 from trunnion.plan.setups import SetupSettings, make_setups
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 BELOW = Feature(id="pocket-09", kind="pocket", faces=(), attributes={"direction": (0.0, 0.0, -1.0)})
 
 

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import programs
+from own_shop import own_shop
 from trunnion.findings import BadInput, Fix
 from trunnion.plan.cutting.milling import CuttingSettings
 from trunnion.plan.cutting.optimization.operation import can_be_optimised
@@ -21,9 +22,8 @@ from trunnion.plan.holes.finish_tools import set_to
 from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.plan.repair.contract import RepairJob
 from trunnion.plan.repair.feed import with_lower_feed
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 TOOLS = {t.name: t for t in SHOP.tools}
 ALUMINIUM, STEEL = SHOP.material("EN AW-7075"), SHOP.material("C45")
 MILL = SHOP.machine("Mill 1200")

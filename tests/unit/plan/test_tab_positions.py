@@ -103,6 +103,7 @@ def paths_of(outline: Region, tabs: tuple[Tab, ...]):
     return (first, last), after.after(last, TOOL)
 
 
+@pytest.mark.examples(14)
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10_000), st.integers(1, 8))
 def test_no_tab_is_in_a_corner_and_none_at_another(seed: int, count: int) -> None:
@@ -121,6 +122,7 @@ def test_no_tab_is_in_a_corner_and_none_at_another(seed: int, count: int) -> Non
         assert not len(others) or np.hypot(*(others - tab.middle).T).min() >= 2 * half + FORM.width
 
 
+@pytest.mark.examples(2)
 @settings(max_examples=6, deadline=None)
 @given(st.integers(0, 10_000))
 def test_paths_leave_the_tabs_and_nothing_else_of_the_channel(seed: int) -> None:

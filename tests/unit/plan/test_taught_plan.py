@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from flat_parts import operation
+from own_shop import own_shop
 from taught_plans import RING, stage
 from trunnion.geometry.frame import WORLD
 from trunnion.model.feature import Feature, Recognition
@@ -17,10 +18,10 @@ from trunnion.plan.library.follow import followed, refusal
 from trunnion.plan.library.teach import taught_plan
 from trunnion.plan.manual.operation_change import OperationChange, with_change
 from trunnion.settings import choose
-from trunnion.shop import TypicalPlan, load_shop
+from trunnion.shop import TypicalPlan
 from trunnion_gui import edits
 
-SHOP = load_shop()
+SHOP = own_shop()
 MATERIAL, MACHINE = SHOP.material("EN AW-7075"), SHOP.machine("Mill 1200")
 LIMITS = choose(CuttingSettings, {})
 D8, D10, D12, D16 = (f"AL3-stub D{d} R0" for d in (8, 10, 12, 16))

@@ -143,7 +143,7 @@ def test_a_table_winds_up_by_more_turns_than_a_finishing_pass_goes_round(name):
 
 
 def test_a_text_keeps_its_place_after_hundreds_of_turns():
-    path = path_of(*[((20.0, 0.01 * k, 5.0), lean(25.0, 40.0 * k)) for k in range(9 * 400 + 1)])
+    path = path_of(*[((20.0, 0.01 * k, 5.0), lean(25.0, 40.0 * k)) for k in range(9 * 200 + 1)])
     text = text_of(program(path), standing(TABLE))
     read = again(text, standing(TABLE)).sections[0].path
     away = np.linalg.norm(read.position - path.position[-1], axis=1)

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import trunnion_resources
+from own_shop import own_shop
 from trunnion.findings import BadInput
 from trunnion.shop import load_shop
 from trunnion.shop.crib import (
@@ -24,7 +25,7 @@ from trunnion.shop.crib import (
 from trunnion.store.tool_crib import put_tool, set_wear, take_tool
 
 MILL = "Mill 1200"
-SHOP = load_shop()
+SHOP = own_shop()
 DRILL, MILL_16 = "DR-S D8", "AL3-stub D16 R0"
 FILE = """# Tools in the machine: T number, pocket, wear in mm (below 0: worn away).
 

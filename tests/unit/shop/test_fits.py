@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from own_shop import own_shop
 from trunnion.findings import BadInput
 from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 FITS = SHOP.fits
 SIZES = st.floats(1.0, 500.0)
 GRADES = st.integers(5, 13)

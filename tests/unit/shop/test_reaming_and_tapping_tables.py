@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from own_shop import own_shop
 from trunnion.findings import BadInput
 from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 STEEL = SHOP.material("C45")
 REAMING = """
 [P]

@@ -6,10 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from own_shop import own_shop
 from trunnion.findings import BadInput
 from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 METRIC = [(d, p) for d, p, _ in SHOP.threads.metric]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from own_shop import own_shop
 from programs import FLAT_16, S1, WALL, path_of, section, session
 from random_programs import cycle
 from trunnion.geometry.frame import WORLD, Frame
@@ -19,14 +20,13 @@ from trunnion.model.motion.toolpath import Toolpath
 from trunnion.model.session import Session
 from trunnion.pipeline.operation_path import turned
 from trunnion.pipeline.proof.playback import timeline_of
-from trunnion.shop import load_shop
 from trunnion.store.mapping import Members, from_xml, to_xml
 from trunnion.toolpath.motion.time import machining_time
 from trunnion.verify.motion import moves_of
 
 TOPS = np.array([[10.0, 5.0, 2.0], [30.0, 5.0, 2.0]])
 HIGH = np.array([0.0, 0.0, 50.0])
-MACHINE = load_shop().machine("Mill 1200")
+MACHINE = own_shop().machine("Mill 1200")
 
 
 def holes(kind=CycleKind.DWELL) -> Toolpath:

@@ -10,6 +10,7 @@ import pytest
 from pytest import approx
 
 from milling import SETUP, box_blank, cutting, mill
+from own_shop import own_shop
 from trunnion.geometry.frame import WORLD
 from trunnion.model.motion.toolpath import Toolpath
 from trunnion.plan.cutting.power import cutting_power
@@ -18,7 +19,7 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.load import LoadStock, PathLoad
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
-ALUMINIUM = load_shop().material("EN AW-7075")
+ALUMINIUM = own_shop().material("EN AW-7075")
 BLANK = box_blank((0, 0, -20), (60, 40, 0))
 TOOL, FEED = mill(10), 1200.0
 DATA = cutting(4, 4, FEED)

@@ -9,6 +9,7 @@ import pytest
 from pytest import approx
 
 from milling import box_blank, cutting
+from own_shop import own_shop
 from surface_forms import (
     cylinder,
     drive_of,
@@ -27,7 +28,6 @@ from trunnion.geometry.sheet.sheet import sheet_of
 from trunnion.model.motion.toolpath import Mark
 from trunnion.model.setup import Setup
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowParameters, flow_lines
 from trunnion.toolpath.contact_passes.stepover import fronts
 from trunnion.toolpath.contact_passes.stepover.fronts import AIM, FIRST, scallop_passes
@@ -36,7 +36,7 @@ from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.toolpath.surface.constant import ConstantSettings, constant
 from trunnion.toolpath.surface.streamline import StreamlineSettings, streamline
 
-SHOP = load_shop()
+SHOP = own_shop()
 BALL = next(t for t in SHOP.tools if t.form == "ball" and t.diameter == 6.0)
 BULL = next(t for t in SHOP.tools if t.form == "bull")
 FLAT = next(t for t in SHOP.tools if t.form == "flat")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -50,16 +51,22 @@ def with_allowances(plan: Region, depth: float, fillet: float = 0.0) -> PlaneDri
     return closed_pocket(plan, depth, fillet, wall_allowance=0.3, floor_allowance=0.3)
 
 
+@cache
+def deep_pocket(pattern: str) -> Milled:
+    """Return the pocket of 20 mm as it stands after roughing with a flat cutter of 16 mm."""
+    return cut(with_allowances(PLAN, 20.0), mill(16), pattern=pattern)[1]
+
+
 @PATTERNS
 def test_a_pocket_is_cleared_down_to_the_floors_allowance(pattern: str) -> None:
-    _, milled = cut(with_allowances(PLAN, 20.0), mill(16), pattern=pattern)
+    milled = deep_pocket(pattern)
     inside = PLAN.offset(-0.35).signed_distance(milled.points).reshape(milled.x.shape) > 0.0
     assert milled.height[inside].max() == pytest.approx(-19.7)
 
 
 @PATTERNS
 def test_the_walls_keep_their_allowance(pattern: str) -> None:
-    _, milled = cut(with_allowances(PLAN, 20.0), mill(16), pattern=pattern)
+    milled = deep_pocket(pattern)
     kept = PLAN.offset(-0.29).signed_distance(milled.points).reshape(milled.x.shape) < 0.0
     assert (milled.height[kept] == 0.0).all()
 

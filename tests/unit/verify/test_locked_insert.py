@@ -10,6 +10,7 @@ import pytest
 from pytest import approx
 
 from gap_turning import BUTTON_12, SETTINGS, drive, gap_data, ground
+from own_shop import own_shop
 from programs import S1
 from shaped_parts import cylinder
 from trunnion.geometry.frame import WORLD
@@ -19,7 +20,6 @@ from trunnion.model.motion.toolpath import Motion
 from trunnion.model.verdict import Outcome
 from trunnion.plan.turning.gap_drive import GapPass
 from trunnion.progress import NO_PROGRESS
-from trunnion.shop import load_shop
 from trunnion.toolpath.turning.interrupted import interrupted
 from trunnion.verify.judge.load import insert_chip
 from trunnion.verify.judge.overload import allowed_load
@@ -27,8 +27,8 @@ from trunnion.verify.judge.verdict import prove
 from trunnion.verify.settings import ProofSettings
 
 RADIUS, DEPTH, FEED, SPEED = 60.0, 0.3, 0.5, 8.0
-MACHINE = load_shop().machine("Mill-turn 1250")
-TITANIUM = load_shop().material("Ti-6Al-4V")
+MACHINE = own_shop().machine("Mill-turn 1250")
+TITANIUM = own_shop().material("Ti-6Al-4V")
 ROWS = 12
 SETTING = replace(SETTINGS, margin=2.0)
 

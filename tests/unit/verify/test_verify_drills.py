@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 from pytest import approx
 
+from own_shop import own_shop
 from programs import section
 from trunnion.model.motion.cycle import Cycle, CycleKind
 from trunnion.model.motion.drilling import drilled
-from trunnion.shop import load_shop
 from trunnion.verify.judge.load import drill_shares
 from trunnion.verify.judge.overload import allowed_load
 
-SHOP = load_shop()
+SHOP = own_shop()
 DRILL = next(t for t in SHOP.tools if t.name == "DR-K D10")
 MILL = next(t for t in SHOP.tools if t.name == "AL3-regular D10 R0")
 PATH = drilled(

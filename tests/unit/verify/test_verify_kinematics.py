@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from own_shop import own_shop
 from trunnion.model.material import Axis
 from trunnion.model.motion.program import ProgramSection
 from trunnion.model.motion.toolpath import Motion, Toolpath
-from trunnion.shop import load_shop
 from trunnion.verify.kernels.rotary import choose_angles_greedy
 from trunnion.verify.kernels.timing import block_times
 from trunnion.verify.machine.kinematics import (
@@ -30,7 +30,7 @@ from trunnion.verify.machine.times import times_of
 from trunnion.verify.motion import moves_of
 from verify_tools import MACHINE, flat
 
-SHOP = load_shop()
+SHOP = own_shop()
 TABLE, FORK = SHOP.machine("Trunnion 650"), SHOP.machine("Gantry 6000 fork")
 HEAD_AND_TABLE = replace(
     MACHINE,

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pytest import approx
 
+from own_shop import own_shop
 from programs import S1
 from trunnion.model.motion.program import Program
 from trunnion.model.spindle import FeedMode
@@ -17,7 +18,6 @@ from trunnion.post.dialects.linuxcnc import LinuxCncDialect
 from trunnion.post.header import Header
 from trunnion.post.readers.linuxcnc import read_linuxcnc
 from trunnion.post.settings import PostSettings
-from trunnion.shop import load_shop
 from trunnion.verify.judge.load import least_angle, load_of, mean_share, stretched
 from trunnion.verify.judge.overload import allowed_load
 from trunnion.verify.motion import moves_of
@@ -25,7 +25,7 @@ from trunnion.verify.stock import StockRun
 from verify_tools import BLANK, MACHINE, TOP, flat, program_section, proof
 
 HEADER = Header(name="B1", part="B1", part_digest="ab12", plan_digest="cd34")
-MATERIAL = load_shop().material("EN AW-7075")
+MATERIAL = own_shop().material("EN AW-7075")
 SLOTTER = flat(10.0)(flute=25.0)
 DEPTH = 6.0
 SLOT = [(-45.0, 0.0, 30.0), (-45.0, 0.0, TOP), (45.0, 0.0, TOP), (45.0, 0.0, 30.0)]

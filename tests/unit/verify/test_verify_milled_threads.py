@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from milling import SETUP, box_blank, cutting
+from own_shop import own_shop
 from trunnion.geometry.frame import Frame
 from trunnion.model.hole_demand import BoreDemand
 from trunnion.model.motion.program import ProgramSection
@@ -23,14 +24,13 @@ from trunnion.plan.holes.settings import ThreadMillSettings
 from trunnion.post.linearize import lines_for_arcs
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 from trunnion.toolpath.hole.thread_mill import thread_mill
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.verify.judge.milled_threads import milled_threads
 from trunnion.verify.motion import moves_of
 from trunnion.verify.settings import ProofSettings
 
-TOOLS = {t.name: t for t in load_shop().tools}
+TOOLS = {t.name: t for t in own_shop().tools}
 PROOF = choose(ProofSettings, {})
 BORE = PlannedHole(
     feature="hole-01", x=20.0, y=30.0, top=0.0, bottom=-20.0, diameter=25.0, through=True

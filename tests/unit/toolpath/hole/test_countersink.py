@@ -6,15 +6,15 @@ import pytest
 from pytest import approx
 
 from milling import SETUP, box_blank, cutting
+from own_shop import own_shop
 from trunnion.model.motion.cycle import CycleKind
 from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.holes.hole import Countersink, PlannedHole
 from trunnion.progress import NO_PROGRESS
-from trunnion.shop import load_shop
 from trunnion.toolpath.hole.countersink import CountersinkSettings, countersink
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
-TOOLS = {t.name: t for t in load_shop().tools}
+TOOLS = {t.name: t for t in own_shop().tools}
 
 
 def sunk(tool, *sinks, dwell=0.2, bore=6.0):

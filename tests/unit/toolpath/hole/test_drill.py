@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from milling import SETUP, box_blank
+from own_shop import own_shop
 from trunnion.model.motion.cycle import CycleKind
 from trunnion.model.motion.toolpath import Motion
 from trunnion.plan.cutting.drilling import drilling_data
@@ -19,12 +20,11 @@ from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.holes.hole import PlannedHole
 from trunnion.plan.holes.settings import DrillSettings
 from trunnion.progress import NO_PROGRESS
-from trunnion.shop import load_shop
 from trunnion.toolpath.hole.drill import drill
 from trunnion.toolpath.motion.tour import short_tour
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
-SHOP = load_shop()
+SHOP = own_shop()
 BLANK = box_blank((0, 0, -40), (100, 60, 0))
 
 

@@ -8,6 +8,7 @@ import pytest
 from pytest import approx
 
 from milling import SETUP, box_blank, cutting
+from own_shop import own_shop
 from trunnion.model.motion.cycle import CycleKind
 from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.holes.finish_tools import set_to
@@ -15,13 +16,12 @@ from trunnion.plan.holes.hole import HoleThread, PlannedHole
 from trunnion.plan.holes.settings import FineBoringSettings, ReamSettings, TapSettings
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 from trunnion.toolpath.hole.fine_bore import fine_bore
 from trunnion.toolpath.hole.ream import ream
 from trunnion.toolpath.hole.tap import tap
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
-TOOLS = {t.name: t for t in load_shop().tools}
+TOOLS = {t.name: t for t in own_shop().tools}
 M6 = HoleThread(diameter=6.0, pitch=1.0, depth=0.0)
 
 

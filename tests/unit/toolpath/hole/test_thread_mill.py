@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from milling import SETUP, box_blank, cutting
+from own_shop import own_shop
 from trunnion.model.motion.toolpath import Motion
 from trunnion.plan.holes.drive import HoleDrive
 from trunnion.plan.holes.hole import HoleThread, PlannedHole
@@ -19,11 +20,10 @@ from trunnion.plan.holes.settings import ThreadMillSettings
 from trunnion.plan.holes.thread_mills import full_depth, helix_of
 from trunnion.progress import NO_PROGRESS
 from trunnion.settings import choose
-from trunnion.shop import load_shop
 from trunnion.toolpath.hole.thread_mill import pass_radii, thread_mill
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
-TOOLS = {t.name: t for t in load_shop().tools}
+TOOLS = {t.name: t for t in own_shop().tools}
 COMB, SINGLE = TOOLS["TM-C D16x2"], TOOLS["TM-S D16 P1.5-3"]
 M27 = HoleThread(diameter=27.0, pitch=2.0, depth=0.0)
 CHOSEN = choose(ThreadMillSettings, {})

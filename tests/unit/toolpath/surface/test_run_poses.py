@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trunnion.shop import load_shop
+from own_shop import own_shop
 from trunnion.tolerance import PARAMETRIC
 from trunnion.toolpath.contact_passes.axis_search import FreeAxes
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contact_passes.run_poses import AxisRuns, poses_along
 
-TOOLS = {form: next(t for t in load_shop().tools if t.form == form) for form in ("ball", "bull")}
+TOOLS = {form: next(t for t in own_shop().tools if t.form == form) for form in ("ball", "bull")}
 CHORD = 0.002
 
 

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
+from own_shop import own_shop
 from trunnion.findings import Refused
 from trunnion.geometry.kernels.cutter_contact.drop_cutter import height_at, slope_at
 from trunnion.geometry.surface.drop_surface import DropSurface
 from trunnion.plan.freeform.cutters.cutter import SURFACE_FORMS, lower_side, tip_at, touching
-from trunnion.shop import load_shop
 
-SHOP = load_shop()
+SHOP = own_shop()
 ONE_OF_EACH = {form: next(t for t in SHOP.tools if t.form == form) for form in SURFACE_FORMS}
 UP = np.array([[0.0, 0.0, 1.0]])
 
