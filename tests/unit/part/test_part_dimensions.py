@@ -270,7 +270,6 @@ def test_only_sizes_of_the_chosen_solid_are_its_own(tmp_path: Path) -> None:
 
 @needs_parts
 @pytest.mark.parts
-@pytest.mark.long
 def test_the_diameters_of_ctc_02_are_those_of_their_faces() -> None:
     # NIST CTC-02: seven diameters as data, two of them on circles at the ends of holes.
     path = PARTS / "public" / "nist" / "nist_ctc_02_asme1_ap242-1.stp"
