@@ -54,7 +54,7 @@ def test_many_numbers_are_written_as_each_by_itself(ticks, decimals, point, scal
     assert made.texts(np.array(ticks), " X") == [f" X{made.text(v)}" for v in ticks]
 
 
-@pytest.mark.examples(50)
+@pytest.mark.examples(15)
 @by_dialect
 @settings(deadline=None, max_examples=40)
 @given(parts=programs, units=st.sampled_from(["mm", "inch"]))

@@ -216,6 +216,8 @@ def test_a_rib_is_entered_from_the_pockets_beside_it_and_not_by_a_helix() -> Non
     assert (path.motion[entries] == Motion.LINE).all()
     assert (path.position[entries, 2] == -6.0).all()
     assert path.feed[entries].max() <= 5.0 / 12.0 * cutting(6, 5).feed
+    # It is no wider than the cutter: one way along it is enough, and back would be through air.
+    assert path.lengths()[path.mark == Mark.CUT].sum() < 50.0
 
 
 def test_a_rib_where_the_cutter_has_no_room_is_an_error() -> None:

@@ -115,6 +115,28 @@ def cut_rims(
         _step_off(builder, layer)
 
 
+def cut_lines(
+    builder: PathBuilder,
+    layer: ClearingLayer,
+    lines: Sequence[Curve],
+    parameters: ClearingParameters,
+    progress: Progress,
+) -> None:
+    """Cut open passes of a layer in full width, the nearest next; each is come to from free space beside it where there is any."""
+    feed = builder.data.feed * parameters.share * parameters.slot
+    for line in nearest_first(lines, lambda: builder.here, _curve_away):
+        progress.check()
+        before = _beside(builder, layer, line.start, line.at(0.0)[1])
+        if before is not None:
+            travel(builder, before, layer.z, layer.axis_region)
+            _feed_across(builder, layer, before, line.start, parameters)
+        else:
+            _come_to(builder, layer, line, parameters)
+        builder.curve(line, layer.z, feed)
+    if lines:
+        _step_off(builder, layer)
+
+
 def _cut_ring(
     builder: PathBuilder,
     layer: ClearingLayer,
@@ -198,8 +220,7 @@ def _free_position(
 def _enter_sideways(
     builder: PathBuilder, layer: ClearingLayer, loop: Curve, parameters: ClearingParameters
 ) -> float | None:
-    """Come down in the free beside a loop and feed straight onto it, no faster than the step removes as much a minute over the whole
-    diameter; return where on the loop, None where nothing beside it is free."""
+    """Come down in the free beside a loop and feed straight onto it; return where on the loop, None where nothing beside it is free."""
     best: tuple[float, float, Floats] | None = None
     for k in range(LOOKED_AT):
         s = k * loop.length / LOOKED_AT
@@ -213,9 +234,21 @@ def _enter_sideways(
         return None
     _, s, before = best
     travel(builder, before, layer.z, layer.axis_region)
-    # The free part of the way is found by bisection and gone at the whole feed.
+    _feed_across(builder, layer, before, loop.at(s)[0], parameters)
+    return s
+
+
+def _feed_across(
+    builder: PathBuilder,
+    layer: ClearingLayer,
+    before: Floats,
+    position: Floats,
+    parameters: ClearingParameters,
+) -> None:
+    """Feed straight from a free position to another, where material stands no faster than the step removes as much a minute over the whole
+    diameter; how far nothing stands is found by bisection."""
     free, met = 0.0, 1.0
-    way = loop.at(s)[0] - before
+    way = position - before
     while (met - free) * float(np.hypot(*way)) > builder.safety:
         middle = 0.5 * (free + met)
         if is_free(builder, before, layer.z, before + middle * way):
@@ -225,8 +258,7 @@ def _enter_sideways(
     if free > 0.0:
         builder.line((*(before + free * way), layer.z), builder.data.feed, Mark.LINK)
     share = parameters.slot * min(parameters.step / builder.tool.diameter, 1.0)
-    builder.line((*loop.at(s)[0], layer.z), builder.data.feed * share, Mark.ENTRY)
-    return s
+    builder.line((*position, layer.z), builder.data.feed * share, Mark.ENTRY)
 
 
 def _from_inner(builder: PathBuilder, layer: ClearingLayer, ring: OffsetRing, loop: Curve) -> float:

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
+
+import numpy as np
 
 from trunnion import tolerance
 from trunnion.findings import Finding, info, warning
+from trunnion.geometry.plane.curve import Curve
+from trunnion.geometry.plane.curve_parts import points_along
 from trunnion.geometry.plane.region import Region
 from trunnion.model.operation import CuttingData
 from trunnion.model.setup import Setup
@@ -19,10 +24,21 @@ from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
 from trunnion.toolpath.motion.engagement import top_width
 from trunnion.toolpath.offsetting import choices
-from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
+from trunnion.toolpath.offsetting.area_clearing import (
+    ClearingLayer,
+    ClearingParameters,
+    clear_area,
+    cut_lines,
+)
 from trunnion.toolpath.offsetting.levels import steps_down
-from trunnion.toolpath.offsetting.rings import ring_tree, safe_step
+from trunnion.toolpath.offsetting.rings import OffsetRing, ring_tree, safe_step
 from trunnion.toolpath.stock.heightfield import PlanningStock
+
+PARTS = 64
+"""Parts of a loop, of which as few as will do are cut."""
+
+MOST_OF_LOOP = 0.8
+"""Of a loop: a part of it that is longer isn't worth coming back over the whole strip afterwards."""
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
@@ -91,18 +107,18 @@ def rib_top(
             )
             continue
         rings = ring_tree(over, parameters.step)
+        lines = [_one_pass(ring, level.wanted, _flat(tool)) for ring in rings]
+        passes = [line for line in lines if line is not None]
+        loops = tuple(r for r, line in zip(rings, lines, strict=True) if line is None)
         for z in steps_down(above, level.bottom, data.depth):
             progress.at(
                 (drive.top - z) / max(drive.top - drive.bottom, tolerance.SEW),
                 f"{drive.feature}: layer at {z:.3f}",
             )
             if not stock.is_clear(z + tolerance.COINCIDENT, level.wanted):
-                clear_area(
-                    builder,
-                    ClearingLayer(z=z, rings=rings, axis_region=axis_region, top=None),
-                    parameters,
-                    progress,
-                )
+                layer = ClearingLayer(z=z, rings=loops, axis_region=axis_region, top=None)
+                clear_area(builder, layer, parameters, progress)
+                cut_lines(builder, layer, passes, parameters, progress)
             above = z
         remaining = level.wanted.minus(over.offset(_flat(tool) + tolerance.SEW)).area
         if remaining > SMALLEST_LEFTOVER:
@@ -115,6 +131,28 @@ def rib_top(
                 )
             )
     return Planned(path=builder.finished(), findings=tuple(findings))
+
+
+def _one_pass(ring: OffsetRing, wanted: Region, flat: float) -> Curve | None:
+    """Return the shortest part of a loop that a cutter with a flat of a radius in mm brings to its height all by that the whole loop does:
+    along a strip that is no wider than the cutter one way is enough. None where that leaves out little of the loop."""
+    if ring.inner or len(ring.curves()) != 1:
+        return None
+    loop = ring.curves()[0]
+    rim = np.concatenate([points_along(c)[1] for c in wanted.curves()])
+    served = rim[(loop.distance(rim) <= flat) | ring.region.contains(rim)]
+    at = np.linspace(0.0, loop.length, PARTS + 1)
+    covers = np.column_stack(
+        [loop.split(a, b).distance(served) <= flat + tolerance.SEW for a, b in pairwise(at)]
+    )
+    # Windows of consecutive parts, round the loop: the shortest of which every place is covered by some part.
+    count = np.cumsum(np.pad(np.tile(covers, 2), ((0, 0), (1, 0))), axis=1)
+    for parts in range(1, int(MOST_OF_LOOP * PARTS) + 1):
+        covered = (count[:, parts : parts + PARTS] > count[:, :PARTS]).all(axis=0)
+        if covered.any():
+            first = int(np.argmax(covered))
+            return loop.split(float(at[first]), float(at[first]) + parts * loop.length / PARTS)
+    return None
 
 
 def _flat(tool: Tool) -> float:
