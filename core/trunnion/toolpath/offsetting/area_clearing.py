@@ -371,7 +371,8 @@ def _beside(
             break
         for along, aside in RUN_OUT_DIRECTIONS if run > 0.0 else RUN_OUT_DIRECTIONS[:1]:
             before = start + run * (along * tangent + aside * left)
-            if is_free(builder, before, layer.z) and layer.axis_region.holds_line(before, start):
+            # Where the axis may not go the stock isn't asked: what stands there changes nothing here.
+            if layer.axis_region.holds_line(before, start) and is_free(builder, before, layer.z):
                 fed = run + descent(builder, before, layer.z)
                 if best is None or fed < best[0]:
                     best = fed, before
