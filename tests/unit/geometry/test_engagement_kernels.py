@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import map_coordinates
 
@@ -139,6 +139,7 @@ def test_a_line_is_free_where_the_disc_clears_it() -> None:
 
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32 - 1))
+@example(675)
 def test_arcs_are_those_of_the_plain_loop(seed: int) -> None:
     pick = np.random.default_rng(seed)
     turns = np.repeat(pick.uniform(-0.1, 0.12, 8), pick.integers(3, 25, 8))
@@ -150,7 +151,10 @@ def test_arcs_are_those_of_the_plain_loop(seed: int) -> None:
     curve = Curve(compiled[0], np.append(compiled[1], 0.0), False)
     assert curve.distance(points).max() <= within + 1e-6
     if len(compiled[0]) == len(plain[0]) and (compiled[0] == plain[0]).all():
-        assert compiled[1] == pytest.approx(plain[1], abs=1e-7)
+        # A larger arc is a line to the compiled loop, as controls want it: its radius is the chord over four bulges.
+        chord = np.linalg.norm(np.diff(plain[0], axis=0), axis=1)
+        largest = np.abs(plain[1]) * 4.0 * LARGEST > chord * (1.0 - 1e-6)
+        assert compiled[1] == pytest.approx(np.where(largest, plain[1], 0.0), abs=1e-7)
 
 
 def test_an_arc_that_is_nearly_straight_is_a_line() -> None:
