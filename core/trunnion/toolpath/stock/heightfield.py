@@ -252,7 +252,7 @@ class PlanningStock:
 
     def height(self, start: ArrayLike, end: ArrayLike, radius: float) -> float:
         """Return the greatest height that a disc may touch on its path from `start` to `end` (2,), or -inf over nothing."""
-        a, b = np.asarray(start, dtype=np.float64)[:2], np.asarray(end, dtype=np.float64)[:2]
+        a, b = (np.ascontiguousarray(p, dtype=np.float64)[:2] for p in (start, end))
         around = radius + 2.0 * self.cell
         self._look(np.minimum(a, b) - around, np.maximum(a, b) + around)
         return float(
