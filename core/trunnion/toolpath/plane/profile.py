@@ -40,17 +40,12 @@ from trunnion.toolpath.offsetting.contour import (
 from trunnion.toolpath.offsetting.levels import steps_down, with_tops
 from trunnion.toolpath.offsetting.trimming import GRAZE, WORTH, PassTrimming
 from trunnion.toolpath.stock.heightfield import PlanningStock
-from trunnion.units import SECONDS_PER_MINUTE
 
 SMALLEST_LEFTOVER = 1.0
 """mm2: less that is left needs no word."""
 
 LITTLE = 0.25
 """mm on the mean of a diameter's way: the next ring takes so much more, where that is all a ring would cut at a corner of the blank."""
-
-STUB = 1.5 / SECONDS_PER_MINUTE
-"""min that a ring's stub at a corner of the blank costs: the ways there and on, by rapids. The next ring takes it along, at a feed that is
-eased, where that takes less."""
 
 RIM_SPACING = 2.0
 """mm between the positions of the blank's rim whose distance from the profile is measured."""
@@ -112,9 +107,6 @@ def profile_rough(
     for guide in drive.walls:
         margin = float(guide.curve.distance(rim).max())
         distances = _ring_distances(drive, tool, data.width, margin)
-        little = LITTLE * tool.diameter
-        if not drive.tabs and margin <= distances[-1] + tool.radius:
-            little = max(little, STUB * data.feed * data.width)
         axis_regions: dict[tuple[int, float], tuple[AxisRegion, list[Curve]]] = {}
         slots = _slots(drive, guide, distances, tool)
         slow = replace(data, feed=data.feed * min(data.width / tool.diameter, 1.0))
@@ -146,7 +138,7 @@ def profile_rough(
                     axis_region,
                     approach,
                     margins[id(boundary)],
-                    0.0 if distance == distances[-1] else little,
+                    0.0 if distance == distances[-1] else LITTLE * tool.diameter,
                 )
         findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     planned = _planned(drive, builder, findings)
