@@ -134,7 +134,8 @@ def strip_engagement(
     """Return the depth and width in mm that take a strip of a height and width off along a wall in the least time: layers and rings as
     those that slots open, or along the flank at the width of constant engagement, which a straight pass keeps by itself.
 
-    The time goes with the number of passes over their feed.
+    The time goes with the number of passes over their feed. In a notch of the outline a ring meets a slot: only materials that bear slots
+    deeper than cuts along walls are cut along the flank.
     """
 
     def passes(deepest: float, widest: Callable[[float], float]) -> tuple[float, float, float]:
@@ -152,7 +153,10 @@ def strip_engagement(
         engaged_depth(tool, material, settings),
         lambda deep: engaged_width(tool, material, settings, deep),
     )
-    _, depth, taken = min(layered, flank, key=lambda found: found[0])
+    found = [layered]
+    if material.slot_factor > material.depth_factor:
+        found.append(flank)
+    _, depth, taken = min(found, key=lambda each: each[0])
     return depth, taken
 
 
