@@ -78,6 +78,11 @@ class Material:
         return max(self.width_factor, self.layer_width_factor)
 
     @property
+    def bears_deep_slots(self) -> bool:
+        """Whether a slot may be deeper than a cut along a wall: where it is, a cutter on its flank may meet a corner or a notch."""
+        return self.slot_factor > self.depth_factor
+
+    @property
     def deepest_engaged_factor(self) -> float:
         """The depth of cut over D at constant engagement."""
         return self.engaged_depth_factor or self.depth_factor

@@ -187,7 +187,7 @@ class Verdict:
         return self.machining_time_s / self.bound_s if self.bound_s > 0.0 else 0.0
 
     def time_shares(self) -> tuple[tuple[str, float], ...]:
-        """Return the shares of the machining time that the parts of the operations' times take together."""
+        """Return the shares of the machining time that the parts of the operations' times take together; none without operations."""
         whole = sum(o.time_s for o in self.operations)
         parts = zip(*(o.time_parts() for o in self.operations), strict=True)
         return tuple(

@@ -16,6 +16,7 @@ from PIL import Image
 
 import rs274
 from trunnion.cli.main import main
+from trunnion.cli.programs.proof import proof_text
 from trunnion.findings import BadCall, BadInput, Cancelled
 from trunnion.model.verdict import Outcome
 from trunnion.pipeline import STEPS, Engine
@@ -72,6 +73,13 @@ def test_the_bound_stands_beside_every_time(line):
         assert sum(seconds for _, seconds in o.time_parts()) == pytest.approx(o.time_s)
     assert sum(o.bound_s for o in verdict.operations) < verdict.bound_s < verdict.machining_time_s
     assert sum(share for _, share in verdict.time_shares()) == pytest.approx(1.0)
+
+
+def test_a_program_that_cuts_nothing_says_nothing_of_where_its_minutes_go(line):
+    verdict = replace(line[1].verdict, operations=(), machining_time_s=0.0, bound_s=0.0)
+    assert verdict.time_shares() == () and verdict.over_bound == 0.0
+    told = proof_text(replace(line[1], verdict=verdict))
+    assert "of that" not in told and "bound" not in told
 
 
 def test_everything_is_written(line):

@@ -139,6 +139,11 @@ def test_at_constant_engagement_a_shallower_cut_is_wider_at_the_same_section():
         assert engaged_width(cutter, titanium, DEFAULT, depth) == approx(2.0)
 
 
+def test_only_a_material_with_deep_slots_lets_a_flank_meet_corners():
+    assert ALUMINIUM.bears_deep_slots
+    assert not SHOP.material("Ti-6Al-4V").bears_deep_slots
+
+
 def test_balance_keeps_a_wide_shallow_cut_at_constant_engagement():
     cutter = tool("AL3-regular D20 R0")
     chosen = roughing_choice(cutter, ALUMINIUM, MACHINE, DEFAULT, 25.0, CONSTANT_ENGAGEMENT)

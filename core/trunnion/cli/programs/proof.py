@@ -137,6 +137,7 @@ def proof_text(session: Session) -> str:
     assert v is not None
     minutes, seconds = divmod(round(v.machining_time_s), 60)
     bound = f", {v.over_bound:.2f} times its bound" if v.bound_s > 0.0 else ""
+    parts = ", ".join(f"{100 * share:.0f} % {name}" for name, share in v.time_shares())
     return "\n".join(
         [
             f"verdict            {v.outcome}",
@@ -145,7 +146,7 @@ def proof_text(session: Session) -> str:
             f"collisions         {v.collisions}",
             f"rapids in stock    {v.rapids_in_stock}",
             f"time at the machine {minutes} min {seconds:02d} s in {len(v.operations)} operations{bound}",
-            f"of that             {', '.join(f'{100 * share:.0f} % {name}' for name, share in v.time_shares())}",
+            *([f"of that             {parts}"] if parts else []),
         ]
     )
 

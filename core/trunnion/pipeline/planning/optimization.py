@@ -22,8 +22,6 @@ from trunnion.plan.cutting.time_bound import RateSearch
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import SECONDS_PER_MINUTE
 
-MM3_PER_CM3 = 1000.0
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DataFigures:
@@ -46,8 +44,8 @@ class OperationComparison:
     """An operation with the tables' data and the optimiser's: None where it keeps the tables'; `gain` the share of time that is saved,
     `bound_by` what stops a quicker choice, and `removal_bound` cm3/min, the most that any engagement allows (0 where it is not known).
 
-    `proven_s` is the time at the machine that the last proof measured, whatever data that was for, and `bound_s` what the volume it removed
-    takes at the bound (both 0 before).
+    `proven_s` is the time at the machine that the last proof measured, whatever data that was for, and `bound_s` its bound
+    (both 0 before).
     """
 
     operation: str
@@ -111,7 +109,6 @@ def _compared(choice: Choice, bound: float, session: Session) -> OperationCompar
     optimised = _figures(problem, choice.optimised.data) if problem and is_changed else None
     verdict = session.verdict
     proof = next((p for p in verdict.operations if p.operation == id), None) if verdict else None
-    removed = proof.removed / MM3_PER_CM3 if proof is not None and bound > 0.0 else 0.0
     return OperationComparison(
         operation=id,
         tool=choice.handbook.tool.number,
@@ -122,7 +119,7 @@ def _compared(choice: Choice, bound: float, session: Session) -> OperationCompar
         objective=optimum.objective if optimum is not None else 0.0,
         removal_bound=bound,
         proven_s=proof.time_s if proof is not None else 0.0,
-        bound_s=removed / bound * SECONDS_PER_MINUTE if removed > 0.0 else 0.0,
+        bound_s=proof.bound_s if proof is not None and bound > 0.0 else 0.0,
     )
 
 

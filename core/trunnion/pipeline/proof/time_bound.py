@@ -15,8 +15,8 @@ from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.session import Session
 from trunnion.model.verdict import Verdict
 from trunnion.pipeline.context import Context
-from trunnion.plan.cutting.optimization.operation import OptimizationSettings
-from trunnion.plan.cutting.time_bound import RateSearch, least_seconds, rates_known
+from trunnion.plan.cutting.optimization.operation import OptimizationSettings, can_be_optimised
+from trunnion.plan.cutting.time_bound import RateSearch, least_seconds
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.units import SECONDS_PER_MINUTE
 
@@ -41,7 +41,7 @@ def with_bounds(
             proofs.append(proof)
             continue
         rates = None
-        if rates_known(operation):
+        if can_be_optimised(operation):
             machine = context.shop.machine(process.setup(operation.setup).machine)
             settings = OptimizationSettings.of({**session.choices, **operation.choices})
             rates = search.rates(operation, machine, settings)

@@ -154,7 +154,7 @@ def strip_engagement(
         lambda deep: engaged_width(tool, material, settings, deep),
     )
     found = [layered]
-    if material.slot_factor > material.depth_factor:
+    if material.bears_deep_slots:
         found.append(flank)
     _, depth, taken = min(found, key=lambda each: each[0])
     return depth, taken

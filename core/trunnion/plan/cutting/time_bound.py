@@ -26,11 +26,7 @@ from trunnion.plan.cutting.milling import (
     roughing_depth,
     roughing_width,
 )
-from trunnion.plan.cutting.optimization.operation import (
-    OptimizationSettings,
-    can_be_optimised,
-    problem_at,
-)
+from trunnion.plan.cutting.optimization.operation import OptimizationSettings, problem_at
 from trunnion.plan.cutting.turning import TURNING_ROUGH
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE
 
@@ -117,7 +113,7 @@ def _borne(
 def least_seconds(operation: Operation, proof: OperationProof, rates: HighestRates | None) -> float:
     """Return the least time in s of an operation as it was proven, without its tool change and rapids.
 
-    Without `rates` there are no models for its tool (`rates_known`): roughing then takes what its data remove a minute, and any other
+    Without `rates` there are no models for it (`can_be_optimised`): roughing then takes what its data remove a minute, and any other
     tool must go once through what it cuts, at the feed of its table.
     """
     if rates is None:
@@ -133,11 +129,6 @@ def least_seconds(operation: Operation, proof: OperationProof, rates: HighestRat
         ),
         proof.time_s,
     )
-
-
-def rates_known(operation: Operation) -> bool:
-    """Return whether the highest rates of an operation can be told: of a mill whose data nobody has set by hand."""
-    return can_be_optimised(operation)
 
 
 def _seconds(amount: float, rate: float) -> float:

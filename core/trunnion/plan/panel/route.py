@@ -362,7 +362,7 @@ def _engagement(
         ), max(allowance, tolerance.SEW)
     if kind == "foot":
         return task.height, task.height
-    if kind == "corner":
+    if kind == "corner" and state.material.bears_deep_slots:
         # A rest's section is less than that of constant engagement where it is no wider.
         flank = even_depth(task.height, engaged_depth(tool, state.material, cutting))
         return flank, min(rough_width, engaged_width(tool, state.material, cutting, flank))

@@ -131,7 +131,7 @@ def cut_lines(
             travel(builder, before, layer.z, layer.axis_region)
             _feed_across(builder, layer, before, line.start, parameters)
         else:
-            _come_to(builder, layer, line, parameters)
+            _go_down(builder, layer, line, parameters)
         builder.curve(line, layer.z, feed)
     if lines:
         _step_off(builder, layer)
@@ -332,13 +332,20 @@ def _cut_open(
 def _come_to(
     builder: PathBuilder, layer: ClearingLayer, piece: Curve, parameters: ClearingParameters
 ) -> None:
-    """Bring the cutter to the start of an open pass: from outside where it is free, else by helix beside it, else by a ramp along it."""
-    start, tangent = piece.start, piece.at(0.0)[1]
-    before = _beside(builder, layer, start, tangent)
-    if before is not None:
-        travel(builder, before, layer.z, layer.axis_region)
-        builder.line((*start, layer.z), builder.data.feed, Mark.LINK)
+    """Bring the cutter to the start of an open pass: from outside where it is free, else down into material."""
+    before = _beside(builder, layer, piece.start, piece.at(0.0)[1])
+    if before is None:
+        _go_down(builder, layer, piece, parameters)
         return
+    travel(builder, before, layer.z, layer.axis_region)
+    builder.line((*piece.start, layer.z), builder.data.feed, Mark.LINK)
+
+
+def _go_down(
+    builder: PathBuilder, layer: ClearingLayer, piece: Curve, parameters: ClearingParameters
+) -> None:
+    """Go down into material to the start of an open pass: by a helix beside it, else by a ramp along it."""
+    start, tangent = piece.start, piece.at(0.0)[1]
     left = np.array([-tangent[1], tangent[0]])
     drop = _top(builder, layer, start, builder.tool.radius) - layer.z
     radius = helix_radius(builder, builder.tool.radius, drop, parameters.ramp)
