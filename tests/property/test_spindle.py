@@ -99,6 +99,7 @@ def test_what_is_not_used_leaves_digests_and_json_as_they_were():
         "layer_share",
         "fastest_link",
         "link_share",
+        "thin_share",
     }
     assert digest(DATA) == "90568a01d1978e9b"
     by_turns = replace(DATA, feed_mode=FeedMode.REVOLUTION)

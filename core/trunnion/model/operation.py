@@ -29,7 +29,8 @@ class CuttingData:
     known of it); `ramp_share`: what of the feed helices and ramps are gone down with (0: they plunge); of data for
     constant engagement `layer_depth` and `layer_width` mm of layers that slots open, and `layer_share` of the feed in them (0: `depth` and
     `width`); `link_share`: how many times the feed links
-    through what was cleared may go at, and `fastest_link` mm/min at most (0: the feed). Where spindle speed and feed were
+    through what was cleared may go at, and `fastest_link` mm/min at most (0: the feed); `thin_share`: how many times the feed a roughing
+    path may go at where it cuts narrower than `width`. Where spindle speed and feed were
     chosen by the optimiser: `handbook_spindle` 1/min and `handbook_feed` mm/min of the material's tables (0 elsewhere), and `bound_by`,
     what stops a quicker choice, in words.
     Of a tool in a locked spindle `spindle` is the table's speed, `feed` the ground's under it and `feed_per_tooth` the feed in mm a turn of
@@ -69,6 +70,7 @@ class CuttingData:
     layer_share: float = added(1.0, written=False)
     fastest_link: float = added(0.0, written=False)
     link_share: float = added(1.0, written=False)
+    thin_share: float = added(1.0, written=False)
 
     def __post_init__(self) -> None:
         if self.spindle_mode is SpindleMode.SURFACE and self.highest_spindle <= 0.0:

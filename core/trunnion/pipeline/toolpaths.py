@@ -13,7 +13,7 @@ from functools import partial
 from trunnion import registry, tolerance
 from trunnion.findings import BadCall, Finding
 from trunnion.geometry.frame import Frame
-from trunnion.model.material import Material
+from trunnion.model.material import Machine, Material
 from trunnion.model.motion.toolpath import Motion, Toolpath
 from trunnion.model.operation import Operation, OperationPath
 from trunnion.model.process import ProcessTree
@@ -27,7 +27,8 @@ from trunnion.plan.freeform.keys import EARLIER
 from trunnion.progress import Progress
 from trunnion.registry import STRATEGIES
 from trunnion.toolpath.contact_passes.choices import HINDERED
-from trunnion.toolpath.motion.load import LoadStock, PathLoad
+from trunnion.toolpath.motion.load.path_load import LoadStock, PathLoad
+from trunnion.toolpath.motion.time import reached_feeds
 from trunnion.toolpath.stock.views import StockViews
 
 
@@ -60,6 +61,7 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
                 handed_on=stock,
             )
             loaded = LoadStock(blank, setup.frame)
+            mill = context.shop.machine(setup.machine)
             operations = session.process.of_setup(setup.name)
 
             def taken(
@@ -67,9 +69,11 @@ def make_paths(session: Session, context: Context, progress: Progress) -> tuple[
                 made: OperationPath,
                 frame: Frame = setup.frame,
                 loaded: LoadStock = loaded,
+                machine: Machine = mill,
             ) -> None:
                 # No path depends on the load of another: it is measured while the next path is laid.
-                loads.append(beside(partial(_load, made.path, frame, operation, loaded, material)))
+                load = partial(_load, made.path, frame, operation, loaded, material, machine)
+                loads.append(beside(load))
                 laid.append(made)
 
             def idle() -> None:
@@ -123,13 +127,15 @@ def _load(
     operation: Operation,
     stock: LoadStock,
     material: Material,
+    machine: Machine,
     progress: Progress,
 ) -> PathLoad | None:
-    """Return the load of a path in a frame, None where it cuts nothing or its tool does not stand upright; it is taken off the stock."""
+    """Return the load of a path in a frame at the feeds that a machine comes up to, None where it cuts nothing or its tool does not stand
+    upright; it is taken off the stock."""
     cuts = path.motion != Motion.RAPID
     if not cuts.any() or (path.axis[cuts, 2] < 1.0 - tolerance.PARAMETRIC).any():
         return None
-    own = turned(path, frame, stock.frame)
+    own = turned(replace(path, feed=reached_feeds(path, machine)), frame, stock.frame)
     return stock.cut(own, operation.cutter, operation.data, material, progress)
 
 

@@ -16,7 +16,7 @@ from trunnion.model.motion.toolpath import Toolpath
 from trunnion.plan.cutting.power import cutting_power
 from trunnion.shop import load_shop
 from trunnion.toolpath.motion.builder import PathBuilder
-from trunnion.toolpath.motion.load import LoadStock, PathLoad
+from trunnion.toolpath.motion.load.path_load import LoadStock, PathLoad
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 ALUMINIUM = own_shop().material("EN AW-7075")

@@ -12,7 +12,7 @@ from milling import SETUP, box_blank, cutting, mill
 from trunnion.model.material import Axis, Machine
 from trunnion.model.motion.toolpath import EMPTY, Motion, Toolpath
 from trunnion.toolpath.motion.builder import PathBuilder
-from trunnion.toolpath.motion.time import block_times, machining_time
+from trunnion.toolpath.motion.time import block_times, machining_time, reached_feeds
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 AXES = tuple(
@@ -54,6 +54,17 @@ def test_a_long_line_takes_its_length_over_the_feed_and_once_the_time_to_speed_u
     builder.line((500, 0, 50), 6000.0)
     # 100 mm/s at 1000 mm/s2: 0.1 s up and 0.1 s down, each over 5 mm.
     assert machining_time(builder.finished(), MACHINE) == pytest.approx(490 / 100 + 0.2)
+
+
+def test_the_feed_that_is_reached_is_the_top_of_the_ramps_and_never_more_than_programmed(
+    builder: PathBuilder,
+) -> None:
+    builder.line((2.5, 0, 50), 6000.0)
+    builder.line((400, 0, 50), 1200.0)
+    path = builder.finished()
+    # From rest over 2.5 mm at 1000 mm/s2, and down to 20 mm/s: v2 = (2 a s + 20^2) / 2.
+    top = np.sqrt(0.5 * (2.0 * 1000.0 * 2.5 + 20.0**2)) * 60.0
+    assert reached_feeds(path, MACHINE)[1:] == pytest.approx([top, 1200.0])
 
 
 def test_a_short_line_never_reaches_its_feed(builder: PathBuilder) -> None:

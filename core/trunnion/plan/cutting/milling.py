@@ -263,6 +263,7 @@ def cutting_data(
         # Finishing enters thin skins: there a ramp takes no time, and would be the largest removal of the operation.
         ramp_share=settings.ramp_share if kind in ROUGHING else 0.0,
         fastest_link=fastest,
+        thin_share=max(settings.thinning_limit / thinning, 1.0),
         # Chips off a film are then as thick as those of the cut.
         link_share=chip_thinning(tool.diameter, FILM * tool.radius)
         / chip_thinning(tool.diameter, width),

@@ -27,7 +27,7 @@ from trunnion.toolpath.contact_passes.channel_lines import (
 )
 from trunnion.toolpath.contact_passes.contacts import Contacts
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
-from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.motion.load.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 ALONG = 0.4

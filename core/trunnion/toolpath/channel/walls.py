@@ -23,7 +23,7 @@ from trunnion.toolpath.contact_passes.flow_lines import DenseFlowLines, FlowPara
 from trunnion.toolpath.contact_passes.leaning_passes import grooving
 from trunnion.toolpath.contact_passes.stepover.fronts import scallop_passes
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
-from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.motion.load.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 

@@ -21,10 +21,10 @@ from trunnion.settings import setting, settings
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.engagement import full_width
 from trunnion.toolpath.motion.feed import arc_feed
 from trunnion.toolpath.motion.hole_access import kept_off
 from trunnion.toolpath.motion.link import top_under, travel
+from trunnion.toolpath.motion.load.engagement import full_width
 from trunnion.toolpath.motion.tour import short_tour
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.stock.heightfield import PlanningStock

@@ -19,10 +19,11 @@ def nearest_first(
     """
     remaining = list(things)
     while remaining:
-        at = here()
-        row = (
-            0
-            if at is None
-            else min(range(len(remaining)), key=lambda k: away(remaining[k], at[:2]))
-        )
-        yield remaining.pop(row)
+        yield remaining.pop(nearest(remaining, here(), away))
+
+
+def nearest(things: Sequence[T], here: Floats | None, away: Callable[[T, Floats], float]) -> int:
+    """Return the row of the thing nearest to where the tool is: the first one when it is nowhere yet."""
+    if here is None:
+        return 0
+    return min(range(len(things)), key=lambda k: away(things[k], here[:2]))

@@ -45,7 +45,21 @@ def block_times(
     On a machine with rotary axes `work_position` says where the work stands and `gauge` mm is the length of the tool from its tip to the
     spindle's face; raises `Refused` for what the machine can't hold or follow.
     """
-    times = np.array(path.dwells())
+    return _timed(path, machine, work_position, gauge)[0]
+
+
+def reached_feeds(path: Toolpath, machine: Machine) -> Floats:
+    """Return the feeds (n,) in mm/min that a machine's linear axes come up to in each block of a path of an upright tool: on short blocks
+    less than is programmed. Rapids keep theirs."""
+    peak = _timed(path, machine, None, 0.0)[1] * SECONDS_PER_MINUTE
+    return np.where(path.motion == Motion.RAPID, path.feed, np.minimum(path.feed, peak))
+
+
+def _timed(
+    path: Toolpath, machine: Machine, work_position: WorkPosition | None, gauge: float
+) -> tuple[Floats, Floats]:
+    """Return the seconds (n,) of each block and the highest speed (n,) in it, in mm/s of all axes' common way."""
+    times, peaks = np.array(path.dwells()), np.zeros(len(path))
     travel = _axis_travel(
         path,
         work_position if work_position is not None and work_position.machine.rotary else None,
@@ -53,7 +67,7 @@ def block_times(
     )
     rows = np.flatnonzero(travel.length > 0.0)
     if len(rows) == 0:
-        return times
+        return times, peaks
     length, first, last = travel.length[rows], travel.first[rows], travel.last[rows]
     axes = [*(machine.axis(name) for name in "XYZ"), *machine.rotary][: first.shape[1]]
     weight = np.array([1.0, 1.0, 1.0, *_weights(machine)])[: first.shape[1]]
@@ -79,10 +93,11 @@ def block_times(
         np.abs(first[:, 3:]).max(axis=1, initial=0.0) > 0.0, ROUNDING_TURNS, ROUNDING
     )
     joint = _joint_speeds(first, last, speed, acceleration, is_rapid, rounding)
-    times[rows] += _trapezoids(
+    seconds, peaks[rows] = _trapezoids(
         length, speed, acceleration, _looked_ahead(length, joint, acceleration)
     )
-    return times
+    times[rows] += seconds
+    return times, peaks
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -187,10 +202,12 @@ def _looked_ahead(length: Floats, joint: Floats, acceleration: Floats) -> Floats
     return np.array(reached)
 
 
-def _trapezoids(length: Floats, speed: Floats, acceleration: Floats, joint: Floats) -> Floats:
+def _trapezoids(
+    length: Floats, speed: Floats, acceleration: Floats, joint: Floats
+) -> tuple[Floats, Floats]:
+    """Return the seconds (n,) of blocks and the highest speed (n,) in each."""
     begin, end = joint[:-1], joint[1:]
     peak = np.minimum(speed, np.sqrt(acceleration * length + 0.5 * (begin**2 + end**2)))
     ramps = (2.0 * peak**2 - begin**2 - end**2) / (2.0 * acceleration)
     cruise = np.maximum(length - ramps, 0.0) / peak
-    times: Floats = (2.0 * peak - begin - end) / acceleration + cruise
-    return times
+    return (2.0 * peak - begin - end) / acceleration + cruise, peak

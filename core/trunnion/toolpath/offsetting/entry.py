@@ -68,25 +68,26 @@ def helix(
     z: float,
     angle: float,
 ) -> None:
-    """Go down anticlockwise round `centre` from just above `top` to `z` and once round there, ending on the side of `towards` (2,)."""
+    """Go down anticlockwise round `centre` from just above `top` to `z`, at a slope of `angle` or in one turn where that is less steep, and
+    once round there, ending on the side of `towards` (2,)."""
     direction = towards - centre
-    first = math.atan2(direction[1], direction[0])
+    last = math.atan2(direction[1], direction[0])
     begin = top + GAP
-    turns = max(
-        1, math.ceil((begin - z) / (math.tau * radius * math.tan(angle)) - tolerance.COINCIDENT)
-    )
-    sides = [
-        centre
-        + radius * np.array([math.cos(first + half * math.pi), math.sin(first + half * math.pi)])
-        for half in (0, 1)
-    ]
-    travel(builder, sides[0], begin)
+    sweep = max((begin - z) / (radius * math.tan(angle)), math.tau)
+
+    def at(turned: float) -> Floats:
+        """Return the position (2,) on the circle by how far it is turned before the end of the helix (rad)."""
+        return centre + radius * np.array([math.cos(last - turned), math.sin(last - turned)])
+
+    travel(builder, at(sweep), begin)
     feed = builder.data.ramp_feed(angle)
-    for n in range(1, 2 * turns + 1):
-        height = begin - (begin - z) * n / (2 * turns)
-        builder.arc((*sides[n % 2], height), centre, math.pi, feed, Mark.ENTRY)
-    for side in (sides[1], sides[0]):
-        builder.arc((*side, z), centre, math.pi, builder.data.feed, Mark.ENTRY)
+    count = max(1, math.ceil(sweep / math.pi - tolerance.COINCIDENT))
+    for n in range(count - 1, -1, -1):
+        turned = sweep * n / count
+        height = z + (begin - z) * n / count
+        builder.arc((*at(turned), height), centre, sweep / count, feed, Mark.ENTRY)
+    for turned in (math.pi, 0.0):
+        builder.arc((*at(turned), z), centre, math.pi, builder.data.feed, Mark.ENTRY)
 
 
 def ramp_round(

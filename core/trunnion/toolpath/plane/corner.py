@@ -21,9 +21,9 @@ from trunnion.toolpath.axis_region import AxisRegion, is_closed
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.easing import eased_finish
-from trunnion.toolpath.motion.engagement import eased_corner
 from trunnion.toolpath.motion.link import RIM
+from trunnion.toolpath.motion.load.easing import eased_finish
+from trunnion.toolpath.motion.load.engagement import eased_corner
 from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.contour import ContourApproach, cut_open, cut_parts

@@ -19,8 +19,8 @@ from trunnion.toolpath.axis_region import level_at
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.easing import eased_finish
-from trunnion.toolpath.motion.engagement import floor_leftovers
+from trunnion.toolpath.motion.load.easing import eased_finish
+from trunnion.toolpath.motion.load.engagement import floor_leftovers
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.passes import passes_over

@@ -23,8 +23,8 @@ from trunnion.progress import Progress
 from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
-from trunnion.toolpath.motion.engagement import inner_corner
 from trunnion.toolpath.motion.link import travel
+from trunnion.toolpath.motion.load.engagement import inner_corner
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 SMALLEST_LEFTOVER, SMALLEST_SHARE = 0.1, 0.01

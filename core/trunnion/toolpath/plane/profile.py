@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -25,10 +25,10 @@ from trunnion.toolpath.axis_region import AxisRegion, level_at
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.easing import eased
-from trunnion.toolpath.motion.engagement import EASING_SLACK, contour_leftovers, inner_corner
 from trunnion.toolpath.motion.link import ASIDE
-from trunnion.toolpath.motion.order import nearest_first
+from trunnion.toolpath.motion.load.easing import fed_by_load
+from trunnion.toolpath.motion.load.engagement import EASING_SLACK, contour_leftovers, inner_corner
+from trunnion.toolpath.motion.order import nearest
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.contour import (
     ContourApproach,
@@ -115,6 +115,7 @@ def profile_rough(
             boundary = level_at(drive, z).boundary
             if id(boundary) not in margins:
                 margins[id(boundary)] = _outside(boundary, stock, drive.wall_allowance)
+            rings = []
             for distance in distances:
                 progress.at(
                     (guide.top - z) / max(guide.top - guide.bottom, tolerance.SEW),
@@ -130,21 +131,26 @@ def profile_rough(
                         ),
                     )
                 axis_region, passes = axis_regions[key]
-                builder.data = slow if distance in slots else data
-                _cut_over_stock(
-                    builder,
-                    passes,
-                    z,
-                    axis_region,
-                    approach,
-                    margins[id(boundary)],
-                    0.0 if distance == distances[-1] else LITTLE * tool.diameter,
+                rings.append(
+                    _Ring(
+                        axis_region=axis_region,
+                        passes=passes,
+                        data=slow if distance in slots else data,
+                        least=0.0 if distance == distances[-1] else LITTLE * tool.diameter,
+                    )
                 )
+            trimming = PassTrimming.of(builder, margins[id(boundary)], z + WORTH, GRAZE)
+            layer = _RingLayer(builder, rings, z, trimming, approach)
+            for n in range(len(rings)):
+                progress.check()
+                layer.cut(n)
         findings += _remaining_findings(drive, guide, tool, drive.wall_allowance)
     planned = _planned(drive, builder, findings)
     # A ring meets a slot where the outline turns into a notch: there it may take what it takes in a corner, as the load was foreseen.
     corner = _ring_width(tool, data, settings, None).width / EASING_SLACK
-    path = eased(planned.path, tool, data, stock, max(corner, data.width) / tool.diameter, progress)
+    path = fed_by_load(
+        planned.path, tool, data, stock, max(corner, data.width) / tool.diameter, progress
+    )
     return replace(planned, path=path)
 
 
@@ -240,26 +246,80 @@ def _slots(
     return frozenset(found)
 
 
-def _cut_over_stock(
-    builder: PathBuilder,
-    passes: list[Curve],
-    z: float,
-    axis_region: AxisRegion,
-    approach: ContourApproach,
-    margin: Region,
-    least: float,
-) -> None:
-    """Cut passes at height `z`, the nearest next, where more than `least` mm2 of the blank's margin stands before the cutter."""
-    trimming = PassTrimming.of(builder, margin, z + WORTH, GRAZE)
-    shorter = replace(approach, radius=min(approach.radius, ASIDE))
-    for whole in nearest_first(passes, lambda: builder.here, curve_away):
-        parts = trimming.parts(builder, whole)
-        if least > 0.0:
-            parts = [part for part in parts if trimming.area(builder, part) > least]
-        if parts == [whole]:
-            cut_parts(builder, parts, z, axis_region, approach)
-        else:
-            cut_parts(builder, parts, z, axis_region, shorter, past=False)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Ring:
+    """A ring round the outline: its axis region and passes, the data it is cut with, and what a stub of it has to meet of the blank's
+    margin, more than `least` mm2, to be cut."""
+
+    axis_region: AxisRegion
+    passes: list[Curve]
+    data: CuttingData
+    least: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _RingLayer:
+    """The rings of one layer, the outermost first, at height `z`, cut where the blank's margin stands before the cutter.
+
+    Where stubs are left of them, at the corners of the blank, those of all rings at a corner are cut before the next corner's.
+    """
+
+    builder: PathBuilder
+    rings: list[_Ring]
+    z: float
+    trimming: PassTrimming
+    approach: ContourApproach
+    stubs: list[tuple[int, Curve]] = field(default_factory=list)
+
+    def cut(self, n: int, beside: Curve | None = None, uncut: tuple[Curve, ...] = ()) -> None:
+        """Cut ring `n`, the nearest next; given a stub that was cut just before, what of it is `beside` that alone, but for what comes near
+        what is still `uncut` of the rings outside of it."""
+        builder, ring = self.builder, self.rings[n]
+        wholes = list(ring.passes)
+        while wholes:
+            whole = wholes.pop(nearest(wholes, builder.here, curve_away))
+            builder.data = ring.data
+            parts = self._trimmed(whole, ring.least)
+            if parts == [whole]:
+                if beside is None:
+                    cut_parts(builder, parts, self.z, ring.axis_region, self.approach)
+                continue
+            if beside is not None:
+                around = (*uncut, *wholes)
+                parts = [
+                    part
+                    for part in parts
+                    if self._are_near(part, beside)
+                    and not any(self._are_near(part, other) for other in around)
+                ]
+            parts = [part for part in parts if not self._is_cut(part, n)]
+            while parts:
+                stub = parts.pop(nearest(parts, builder.here, curve_away))
+                self.stubs.append((n, stub))
+                builder.data = ring.data
+                shorter = replace(self.approach, radius=min(self.approach.radius, ASIDE))
+                cut_parts(builder, [stub], self.z, ring.axis_region, shorter, past=False)
+                if n + 1 < len(self.rings):
+                    self.cut(n + 1, stub, (*uncut, *wholes, *parts))
+
+    def _trimmed(self, whole: Curve, least: float) -> list[Curve]:
+        parts = self.trimming.parts(self.builder, whole)
+        if least <= 0.0:
+            return parts
+        return [part for part in parts if self.trimming.area(self.builder, part) > least]
+
+    def _is_cut(self, part: Curve, n: int) -> bool:
+        """Return whether a stub of ring `n` was cut before: the rim of what stands inside of it still seems to stand before the cutter."""
+        _, points = points_along(part, self.trimming.graze)
+        return any(
+            m == n and float(stub.distance(points).max()) < self.trimming.graze
+            for m, stub in self.stubs
+        )
+
+    def _are_near(self, part: Curve, other: Curve) -> bool:
+        """Return whether the cutter on one pass comes to what it meets on another."""
+        _, points = points_along(part, self.builder.tool.radius)
+        return float(other.distance(points).min()) < self.builder.tool.diameter
 
 
 def _steps(

@@ -22,7 +22,7 @@ from trunnion.toolpath.axis_region import AxisRegion
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.engagement import top_width
+from trunnion.toolpath.motion.load.engagement import top_width
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import (
     ClearingLayer,

@@ -19,8 +19,8 @@ from trunnion.toolpath.constant_engagement.clearing import RIM, EngagedClearing
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.easing import eased
-from trunnion.toolpath.motion.engagement import ENGAGED_SLACK, roughing
+from trunnion.toolpath.motion.load.easing import fed_by_load
+from trunnion.toolpath.motion.load.engagement import ENGAGED_SLACK, ENGAGED_SPARE, roughing
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import (
     ClearingLayer,
@@ -161,11 +161,11 @@ def rough(
     findings += _corners(
         drive, tool, [(level, area) for level, area in remaining if area >= SMALLEST_LEFTOVER]
     )
-    slot = parameters.slot * data.deepest_slot / data.depth
+    slot, spare = parameters.slot * data.deepest_slot / data.depth, 1.0
     if engaged:
-        slot = ENGAGED_SLACK * data.width / tool.diameter
+        slot, spare = ENGAGED_SLACK * data.width / tool.diameter, ENGAGED_SPARE
     return Planned(
-        path=eased(builder.finished(), tool, data, stock, slot, progress),
+        path=fed_by_load(builder.finished(), tool, data, stock, slot, progress, spare=spare),
         findings=tuple(findings),
     )
 

@@ -21,8 +21,9 @@ from trunnion.toolpath.axis_region import AxisRegion, AxisRegions, is_closed, le
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.builder import PathBuilder
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.easing import eased_finish
-from trunnion.toolpath.motion.engagement import eased_leftovers
+from trunnion.toolpath.motion.load.easing import eased_finish
+from trunnion.toolpath.motion.load.engagement import eased_leftovers
+from trunnion.toolpath.motion.order import nearest_first
 from trunnion.toolpath.offsetting import choices
 from trunnion.toolpath.offsetting.area_clearing import ClearingLayer, ClearingParameters, clear_area
 from trunnion.toolpath.offsetting.contour import (
@@ -177,16 +178,20 @@ def _cut_floor_rest(
         level.boundary, distance, mitred=each.fillet > 0.0 and is_closed(level)
     )
     step = safe_step(tool, tool.radius)
-    clip = rest.offset(step)
-    layer = ClearingLayer(
-        z=each.z,
-        rings=ring_tree(axis_region.region, step, clip),
-        axis_region=axis_region,
-        clip=clip,
-    )
-    clear_area(
-        builder, layer, ClearingParameters(step=step, ramp=approach.ramp, slot=1.0), progress
-    )
+    parameters = ClearingParameters(step=step, ramp=approach.ramp, slot=1.0)
+    for clip in nearest_first(rest.offset(step).split(), lambda: builder.here, _away):
+        layer = ClearingLayer(
+            z=each.z,
+            rings=ring_tree(axis_region.region, step, clip),
+            axis_region=axis_region,
+            clip=clip,
+        )
+        clear_area(builder, layer, parameters, progress)
+
+
+def _away(area: Region, position: Floats) -> float:
+    """Return how far an area is from a position (2,)."""
+    return max(-float(area.signed_distance(position)[0]), 0.0)
 
 
 def _clusters(positions: Floats, apart: float) -> list[tuple[Floats, Floats]]:

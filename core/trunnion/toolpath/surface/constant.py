@@ -17,7 +17,7 @@ from trunnion.toolpath.contact_passes.upright.fixed_axis import upright_passes
 from trunnion.toolpath.contact_passes.upright.upright_path import upright_path
 from trunnion.toolpath.contract import Planned, strategy
 from trunnion.toolpath.motion.choices import safety
-from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.motion.load.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 

@@ -41,7 +41,7 @@ from trunnion.toolpath.contact_passes.stepover.spacing import (
 from trunnion.toolpath.contact_passes.upright.tracing import follow
 from trunnion.toolpath.contact_passes.upright.upright_path import linked_without_contact
 from trunnion.toolpath.contract import Planned, lead_and_tilt, strategy
-from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.motion.load.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 ALONG = 0.1

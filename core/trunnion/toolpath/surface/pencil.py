@@ -31,7 +31,7 @@ from trunnion.toolpath.contact_passes.upright.tip_grid import grid_around, sprea
 from trunnion.toolpath.contact_passes.upright.tracing import follow
 from trunnion.toolpath.contact_passes.upright.upright_path import linked_without_contact
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.motion.load.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 CELL, FINEST, COARSEST = 0.1, 0.05, 0.5

@@ -38,7 +38,7 @@ from trunnion.toolpath.contact_passes.stock_clearance import (
     StockClearance,
 )
 from trunnion.toolpath.contract import Planned, leaning_axis, strategy
-from trunnion.toolpath.motion.engagement import contour_leftovers
+from trunnion.toolpath.motion.load.engagement import contour_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import trimmed
 

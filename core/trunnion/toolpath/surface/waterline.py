@@ -43,7 +43,7 @@ from trunnion.toolpath.contact_passes.upright.upright_path import linked_without
 from trunnion.toolpath.contact_passes.upright.wall_foot import foot_passes
 from trunnion.toolpath.contact_passes.upright.wall_levels import with_levels
 from trunnion.toolpath.contract import Planned, strategy
-from trunnion.toolpath.motion.engagement import surface_leftovers
+from trunnion.toolpath.motion.load.engagement import surface_leftovers
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 CELL, FINEST, COARSEST = 0.2, 0.1, 1.5

@@ -1,7 +1,7 @@
 """The load that a path as it was laid puts on cutter and spindle, piece by piece, from what it takes off the stock.
 
 Sections and widths of cut are means over a diameter's way: a corner that loads a cutter for less is not a peak. Power is Kienzle's, as in
-the cutting data. Feeds are those that are programmed: a machine that doesn't come up to them on a short block bears less.
+the cutting data, at the feeds that the path has.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion import tolerance
-from trunnion.geometry.arrays import Bools, Floats
+from trunnion.geometry.arrays import Bools, Floats, Ints
 from trunnion.geometry.frame import Frame
 from trunnion.model.blank import Blank
 from trunnion.model.material import Material
@@ -21,7 +21,7 @@ from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.power import drill_chip, specific_force
 from trunnion.progress import NO_PROGRESS, Progress
-from trunnion.toolpath.motion.easing import PIECE, in_pieces
+from trunnion.toolpath.motion.load.pieces import PIECE, cut_width, in_pieces
 from trunnion.toolpath.stock.heightfield import PlanningStock
 from trunnion.units import MM_PER_METRE, SECONDS_PER_MINUTE, WATTS_PER_KILOWATT
 
@@ -63,26 +63,29 @@ class LoadStock:
             # A setup whose tools all lean needs none, and of a large turned blank it takes seconds.
             self._stock = PlanningStock.centred_in(self._blank, self.frame, CELL)
         cuts = path.motion != Motion.RAPID
-        pieces, _ = in_pieces(path, PIECE * tool.radius, cuts)
-        return load_of(pieces, tool, data, material, *self._stock.taken(pieces, tool, progress))
+        pieces, block = in_pieces(path, PIECE * tool.radius, cuts)
+        taken = self._stock.taken(pieces, tool, progress)
+        return load_of(pieces, block, tool, data, material, *taken)
 
 
 def load_of(
     pieces: Toolpath,
+    block: Ints,
     tool: Tool,
     data: CuttingData,
     material: Material,
     volume: Floats,
     squares: Floats,
 ) -> PathLoad:
-    """Return the load of pieces that take off volumes (n,) mm3, the squares of their heights summed up to `squares` (n,) mm4."""
+    """Return the load of pieces of blocks (n,) that take off volumes (n,) mm3, the squares of their heights summed up to `squares` (n,)
+    mm4."""
     cuts = (volume > 0.0) & (pieces.motion != Motion.RAPID)
     # Each piece's volume goes at its own feed: a neighbour that is eased doesn't count at the feed of this one.
     section, square, flow = (
-        np.where(cuts, _by_length(pieces, taken, tool.core_diameter), 0.0)
+        np.where(cuts, _by_length(pieces, block, taken, tool.core_diameter), 0.0)
         for taken in (volume, squares, volume * np.where(cuts, pieces.feed, 0.0))
     )
-    width = _width(section, square, tool)
+    width = cut_width(section, square, tool)
     feed = np.divide(flow, section, out=np.zeros(len(pieces)), where=section > 0.0)
     tooth = feed / (tool.teeth * data.spindle)
     if tool.edge_angle > 0.0:
@@ -103,7 +106,9 @@ def _thickest_share(
     """Return the thickest chip of each piece (n,) over the feed per tooth: thick where a cutter is engaged far round, for however short a
     way."""
     length = np.maximum(pieces.lengths(), tolerance.COINCIDENT)
-    here = _width(np.where(cuts, volume / length, 0.0), np.where(cuts, squares / length, 0.0), tool)
+    here = cut_width(
+        np.where(cuts, volume / length, 0.0), np.where(cuts, squares / length, 0.0), tool
+    )
     return np.asarray(np.sin(np.minimum(contact_arc(here, tool.core_diameter), 0.5 * math.pi)))
 
 
@@ -118,25 +123,25 @@ def mean_share(width: Floats, diameter: float) -> Floats:
     return np.divide(2.0 * width / diameter, arc, out=np.zeros(len(arc)), where=arc > 0.0)
 
 
-def _width(section: Floats, square: Floats, tool: Tool) -> Floats:
-    """Return the width (n,) mm of cuts of a section (n,) mm2 whose heights' squares sum up to `square` (n,) mm3 across.
-
-    Of heights h it is (sum of h)^2 / (sum of h^2), that of one even layer: thin films beside a cut don't widen it.
-    """
-    width = np.divide(section**2, square, out=np.zeros(len(section)), where=square > 0.0)
-    return np.clip(width, section / tool.flute_length, tool.core_diameter)
-
-
-def _by_length(pieces: Toolpath, taken: Floats, window: float) -> Floats:
-    """Return what pieces take (n,) over their way (n,), on a stretch of at least a window (mm) about each; a rapid ends a stretch."""
+def _by_length(pieces: Toolpath, block: Ints, taken: Floats, window: float) -> Floats:
+    """Return what pieces take (n,) over their way (n,), on a stretch of at least a window (mm) about each, or about its block where that is
+    shorter; a rapid ends a stretch."""
     length, rapid = pieces.lengths(), pieces.motion == Motion.RAPID
     # Rapids are as long as no window is, and along them neither way nor what is taken grows.
     at, way, total = (
         np.concatenate([[0.0], np.cumsum(steps)])
         for steps in (np.where(rapid, window, length), np.where(rapid, 0.0, length), taken)
     )
-    spare = 0.5 * np.maximum(window - length, 0.0)
-    low, high = at[:-1] - spare, at[1:] + spare
+    first = np.flatnonzero(np.diff(block, prepend=-1))
+    last = np.append(first[1:], len(block))
+    of_block = np.bincount(np.cumsum(np.diff(block, prepend=-1) != 0) - 1, length)
+    rows = np.arange(len(first)).repeat(last - first)
+    short = of_block[rows] < window
+    low, high = (
+        np.where(short, at[ends[rows]], own) for ends, own in ((first, at[:-1]), (last, at[1:]))
+    )
+    spare = 0.5 * np.maximum(window - np.where(short, of_block[rows], length), 0.0)
+    low, high = low - spare, high + spare
     between = np.interp(high, at, way) - np.interp(low, at, way)
     cut = np.interp(high, at, total) - np.interp(low, at, total)
     return np.divide(cut, between, out=np.zeros(len(pieces)), where=~rapid & (between > 0.0))

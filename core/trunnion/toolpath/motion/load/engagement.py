@@ -12,7 +12,7 @@ from trunnion import tolerance
 from trunnion.model.operation import CuttingData, Engagement, Operation
 from trunnion.model.tool import Tool
 from trunnion.plan.cutting.engaged import ENGAGED
-from trunnion.toolpath.motion.easing import LEAST, slot_of_finish
+from trunnion.toolpath.motion.load.easing import LEAST, slot_of_finish
 
 CRESCENTS = "crescents meet material"
 FULL_WIDTH = "the cutter enters at full width"
@@ -20,8 +20,10 @@ INNER_CORNER = "walls meet in a corner"
 LEFTOVERS = "it meets what roughing left"
 EASING_SLACK = 1.25
 """What easing still lets through: it goes by pieces of half a radius and a field of heights, and takes the mean of a diameter's way."""
-ENGAGED_SLACK = 1.1
+ENGAGED_SLACK = 1.05
 """What it lets through at constant engagement, where the width of cut stays what it is."""
+ENGAGED_SPARE = 1.1
+"""By how much more what is eased there goes slower, in necks and corners that are cut by slots."""
 LAYERS = 2.0
 """Layers of roughing that leftovers in a corner are high where a cutter meets them at once."""
 BOTH_WALLS = 2.0

@@ -1,0 +1,1 @@
+"""What a path takes off the stock piece by piece: its load, and feeds that follow it."""
