@@ -47,6 +47,9 @@ UNIT_LENGTH = MM_PER_METRE
 SPEED, SPINDLE, CHIP = "cutting speed", "spindle speed", "chip thickness"
 PEAK_CHIP = 1.25
 """Thickest chip at the largest engagement over the largest of the material's range: half of what the proof bears over the table."""
+THICKEST_CHIP = 1.4
+"""Largest feed per tooth, raised for chips that are thin in a small width of cut, over the largest of the material's range: a moment in
+full width, in a corner or where leftovers stand, makes chips as thick, and the proof bears one and a half times the table's."""
 WEAR = "tool life"
 """What stops an optimum that no limit does: quicker ones wear more than they gain."""
 
@@ -199,6 +202,8 @@ def _feed_range(
     share = thinning * slenderness(tool, settings) * settings.feed_share
     low, high = (share * _table_chip(material, tool, r) for r in material.feed_range)
     low = min(low, data.feed_per_tooth)
+    top = settings.feed_share * _table_chip(material, tool, material.feed_range[1])
+    high = min(high, max(THICKEST_CHIP * top, data.feed_per_tooth))
     return low, max(high, low)
 
 
@@ -304,6 +309,8 @@ def at_optimum(
             handbook_spindle=data.spindle,
             handbook_feed=data.feed,
             bound_by=bound,
+            # What a link scrapes off is as thin as before: so are its chips.
+            link_share=max(data.link_share * data.feed_per_tooth / optimum.feed, 1.0),
         ),
     )
 

@@ -14,7 +14,7 @@ class OptimizeSettings:
     """Which data operations get, what time and tools cost, and the limits beside those of all cutting data."""
 
     data: str = setting(
-        HANDBOOK,
+        OPTIMISED,
         choices=(HANDBOOK, OPTIMISED),
         label="Cutting data",
         help="Data of the material's tables, or spindle speed and feed chosen for least time and cost within their ranges.",

@@ -16,8 +16,8 @@ from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.model.operation import CuttingData
 from trunnion.model.tool import Tool
 from trunnion.progress import NO_PROGRESS, Progress
-from trunnion.toolpath.motion.load.pieces import PIECE, in_pieces
 from trunnion.toolpath.motion.load.chip_thinning import raised
+from trunnion.toolpath.motion.load.pieces import PIECE, in_pieces
 from trunnion.toolpath.stock.heightfield import PlanningStock
 
 STEPS = 20
