@@ -13,7 +13,7 @@ from trunnion.findings import Cancelled, Severity
 from trunnion.geometry.plane.region import Region
 from trunnion.model.motion.toolpath import Mark, Motion, Toolpath
 from trunnion.plan.cutting.engaged import BY_TIME, CONSTANT_ENGAGEMENT, CONTOUR_PARALLEL
-from trunnion.plan.prismatic.drive import DriveLevel, PlaneDrive
+from trunnion.plan.prismatic.drive import DriveLevel, Floor, PlaneDrive
 from trunnion.progress import NO_PROGRESS, Progress
 from trunnion.toolpath.contract import Planned
 from trunnion.toolpath.plane.rough import RoughSettings, rough
@@ -171,6 +171,32 @@ def test_a_low_strip_over_a_fillet_is_left_to_finishing() -> None:
     _, milled = cut(with_allowances(PLAN, 20.0, 4.0), mill(16), depth=6.0)
     lowest = {round(float(z), 3) for z in milled.height[milled.height < 0.0].ravel()}
     assert -16.0 not in lowest
+
+
+@pytest.mark.parametrize("pattern", ["contour-parallel", "constant-engagement"])
+def test_no_strip_over_a_fillet_stands_above_the_flutes_in_a_deeper_band(pattern: str) -> None:
+    # A step with a fillet at its foot; the deeper part goes on below it along three walls of the pocket.
+    deeper, fillet = PLAN.intersect(Region.rectangle(-1, -1, 25, 51)), 2.0
+    levels = (
+        DriveLevel(top=0.0, bottom=-12.0, wanted=PLAN, boundary=PLAN),
+        DriveLevel(top=-12.0, bottom=-24.0, wanted=deeper, boundary=deeper),
+    )
+    floors = (
+        Floor(z=-12.0, region=PLAN.minus(deeper), fillet=fillet, face=1),
+        Floor(z=-24.0, region=deeper, fillet=fillet, face=2),
+    )
+    drive = closed_pocket(
+        PLAN, 24.0, levels=levels, floors=floors, fillet=fillet, wall_allowance=0.5
+    )
+    tool, stock = mill(5, flute_length=7.0), PlanningStock.of(BLANK, SETUP)
+    data = replace(cutting(4.0, 1.5), layer_depth=4.0, layer_width=1.5)
+    path = rough(drive, tool, data, stock, SETUP, RoughSettings(pattern=pattern), NO_PROGRESS).path
+    first = int(np.argmax(path.position[:, 2] < -12.0 - 1.0))
+    rows = {name: getattr(path, name)[:first] for name in ("position", "axis", "motion")}
+    rows |= {name: getattr(path, name)[:first] for name in ("centre", "feed", "mark")}
+    before = stock.after(Toolpath(**rows), tool)
+    inner = deeper.offset(-0.5 - 2.0 * before.cell)
+    assert before.is_clear(-16.0 + tool.flute_length, inner)
 
 
 def test_entries_are_as_steep_as_the_material_bears_or_a_person_says() -> None:

@@ -136,7 +136,10 @@ def rough(
                     progress=progress,
                 )
                 rim = _over_feet(drive, tool, z)
-                if above - rim > TALL * tool.radius:
+                # Under strips that no flute reaches over from the next band's first layer the neck would come to them.
+                goes_on = n + 1 < len(drive.levels) and z == heights[-1]
+                too_high = goes_on and above - (z - data.depth) > tool.flute_length - tolerance.SEW
+                if above - rim > TALL * tool.radius or (too_high and math.isfinite(rim)):
                     # Strips stand on walls over fillets that have kept the cutter off all the layer's height.
                     beside = tool.radius + drive.wall_allowance + _foot(drive, tool, rim)
                     strips = _passes(dict(made), drive, level, tool, beside, parameters.step)
