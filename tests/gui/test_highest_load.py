@@ -72,7 +72,7 @@ def test_more_than_the_limit_has_the_colour_of_what_is_wrong(shown):
 
 
 def test_where_strategies_meet_most_is_translated():
-    from trunnion.toolpath.motion import engagement
+    from trunnion.toolpath.motion.load import engagement
     from trunnion.toolpath.plane import face
 
     i18n.use("zh_CN")
