@@ -246,7 +246,7 @@ def test_a_ring_that_would_cut_hardly_anything_is_left_to_the_next_one() -> None
     assert farthest_ring(profile_roughed(tool, 6.0), tool) == pytest.approx(6.3, abs=0.01)
 
 
-def test_stubs_of_all_rings_at_a_corner_are_cut_before_the_next_corners() -> None:
+def test_arcs_of_all_rings_at_a_corner_are_cut_before_the_next_corners() -> None:
     tool = mill(16, flute_length=30.0)
     path = profile_roughed(tool, 5.0)
     cuts = path.mark == Mark.CUT
@@ -254,12 +254,12 @@ def test_stubs_of_all_rings_at_a_corner_are_cut_before_the_next_corners() -> Non
     ends = np.flatnonzero(cuts & ~np.roll(cuts, -1))
     middle = np.array([path.position[a : b + 1, :2].mean(axis=0) for a, b in zip(begins, ends)])
     length = np.array([path.lengths()[a : b + 1].sum() for a, b in zip(begins, ends)])
-    stubs = length < 60.0
-    assert stubs.sum() == 8 and not stubs[-1]
-    corner = (middle[stubs] > [50.0, 30.0]) @ [1, 2]
+    arcs = length < 60.0
+    assert arcs.sum() == 8 and not arcs[-1]
+    corner = (middle[arcs] > [50.0, 30.0]) @ [1, 2]
     assert (corner[::2] == corner[1::2]).all() and len(set(corner)) == 4
     # The outer one, the shorter, comes first.
-    assert (length[stubs][::2] < length[stubs][1::2]).all()
+    assert (length[arcs][::2] < length[arcs][1::2]).all()
 
 
 def test_facing_goes_to_the_next_row_at_rapid() -> None:

@@ -248,7 +248,7 @@ def _slots(
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class _Ring:
-    """A ring round the outline: its axis region and passes, the data it is cut with, and what a stub of it has to meet of the blank's
+    """A ring round the outline: its axis region and passes, the data it is cut with, and what a part of it has to meet of the blank's
     margin, more than `least` mm2, to be cut."""
 
     axis_region: AxisRegion
@@ -261,7 +261,8 @@ class _Ring:
 class _RingLayer:
     """The rings of one layer, the outermost first, at height `z`, cut where the blank's margin stands before the cutter.
 
-    Where stubs are left of them, at the corners of the blank, those of all rings at a corner are cut before the next corner's.
+    Where they meet it in short arcs alone, at the corners of the blank, the arcs of all rings at a corner are cut before the next corner's.
+    `cut_arcs` are those with their rings.
     """
 
     builder: PathBuilder
@@ -269,12 +270,13 @@ class _RingLayer:
     z: float
     trimming: PassTrimming
     approach: ContourApproach
-    stubs: list[tuple[int, Curve]] = field(default_factory=list)
+    cut_arcs: list[tuple[int, Curve]] = field(default_factory=list)
 
     def cut(self, n: int, beside: Curve | None = None, uncut: tuple[Curve, ...] = ()) -> None:
-        """Cut ring `n`, the nearest next; given a stub that was cut just before, what of it is `beside` that alone, but for what comes near
+        """Cut ring `n`, the nearest next; given an arc that was cut just before, what of it is `beside` that alone, but for what comes near
         what is still `uncut` of the rings outside of it."""
         builder, ring = self.builder, self.rings[n]
+        shorter = replace(self.approach, radius=min(self.approach.radius, ASIDE))
         wholes = list(ring.passes)
         while wholes:
             whole = wholes.pop(nearest(wholes, builder.here, curve_away))
@@ -294,13 +296,12 @@ class _RingLayer:
                 ]
             parts = [part for part in parts if not self._is_cut(part, n)]
             while parts:
-                stub = parts.pop(nearest(parts, builder.here, curve_away))
-                self.stubs.append((n, stub))
+                arc = parts.pop(nearest(parts, builder.here, curve_away))
+                self.cut_arcs.append((n, arc))
                 builder.data = ring.data
-                shorter = replace(self.approach, radius=min(self.approach.radius, ASIDE))
-                cut_parts(builder, [stub], self.z, ring.axis_region, shorter, past=False)
+                cut_parts(builder, [arc], self.z, ring.axis_region, shorter, past=False)
                 if n + 1 < len(self.rings):
-                    self.cut(n + 1, stub, (*uncut, *wholes, *parts))
+                    self.cut(n + 1, arc, (*uncut, *wholes, *parts))
 
     def _trimmed(self, whole: Curve, least: float) -> list[Curve]:
         parts = self.trimming.parts(self.builder, whole)
@@ -309,12 +310,13 @@ class _RingLayer:
         return [part for part in parts if self.trimming.area(self.builder, part) > least]
 
     def _is_cut(self, part: Curve, n: int) -> bool:
-        """Return whether a stub of ring `n` was cut before: the rim of what stands inside of it still seems to stand before the cutter."""
-        _, points = points_along(part, self.trimming.graze)
-        return any(
-            m == n and float(stub.distance(points).max()) < self.trimming.graze
-            for m, stub in self.stubs
-        )
+        """Return whether an arc of ring `n` was cut before: the rim of what stands inside of it still seems to stand before the cutter."""
+        own = [arc for m, arc in self.cut_arcs if m == n]
+        if not own:
+            return False
+        graze = self.trimming.graze
+        _, points = points_along(part, graze)
+        return any(float(arc.distance(points).max()) < graze for arc in own)
 
     def _are_near(self, part: Curve, other: Curve) -> bool:
         """Return whether the cutter on one pass comes to what it meets on another."""

@@ -134,13 +134,11 @@ def _by_length(pieces: Toolpath, block: Ints, taken: Floats, window: float) -> F
     )
     first = np.flatnonzero(np.diff(block, prepend=-1))
     last = np.append(first[1:], len(block))
-    of_block = np.bincount(np.cumsum(np.diff(block, prepend=-1) != 0) - 1, length)
-    rows = np.arange(len(first)).repeat(last - first)
-    short = of_block[rows] < window
-    low, high = (
-        np.where(short, at[ends[rows]], own) for ends, own in ((first, at[:-1]), (last, at[1:]))
-    )
-    spare = 0.5 * np.maximum(window - np.where(short, of_block[rows], length), 0.0)
+    whole = np.bincount(block, length)[block]
+    short = whole < window
+    low = np.where(short, at[first[block]], at[:-1])
+    high = np.where(short, at[last[block]], at[1:])
+    spare = 0.5 * np.maximum(window - np.where(short, whole, length), 0.0)
     low, high = low - spare, high + spare
     between = np.interp(high, at, way) - np.interp(low, at, way)
     cut = np.interp(high, at, total) - np.interp(low, at, total)
